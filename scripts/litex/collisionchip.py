@@ -1,17 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """cchip_chip as a LiteX core: one slot with the quad test, nothing is exchanged at run time.
 
-    chip = CollisionChip(platform)
-    self.chip = chip
-    self.bus.add_slave("chip", chip.bus, SoCRegion(origin=0x9000_0000, size=0x1000, cached=False))
-    self.bus.add_master("chip", chip.memory)
-    self.irq.add("chip", use_loc_if_exists=True)
+    self.chip = CollisionChip(platform)
+    self.chip.add_to(self, origin=0x9000_0000)
 
 Registers: docs/hardware/chip-registers.md; how a driver uses them: docs/hardware/programmers-guide.md. The memory that `memory` reaches has to be
 coherent with the CPU's view of it."""
 import pathlib
 
 from litex.gen import LiteXModule
+from litex.soc.integration.soc import SoCRegion
 from litex.soc.interconnect.axi import AXIInterface, AXILiteInterface
 from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourceLevel
 from migen import ClockSignal, Constant, Instance, ResetSignal, Signal
@@ -64,6 +62,21 @@ class CollisionChip(LiteXModule):
         self.comb += [channel.last.eq(1) for channel in (memory.ar, memory.aw)]
         self.specials += Instance("cchip_chip", **{f"p_{name}": value for name, value in parameters.items()}, **ports)
         self.add_sources(platform, file_list)
+
+    def add_to(self, soc, origin, name="chip"):
+        """Connects registers, memory and, if the SoC has a CPU, the interrupt; `name`: this core's attribute of the SoC. A bus whose addresses are
+        narrower cuts off the upper bits of the chip's. ValueError: a bus on which records would arrive in parts."""
+        if soc.bus.data_width < 128:
+            raise ValueError(f"{name}: the SoC's bus ({soc.bus.standard}) has {soc.bus.data_width} bit, and the chip's records of 128 bit would "
+                             "arrive in parts; build the SoC with bus_data_width=128")
+        soc.bus.add_slave(name, self.bus, SoCRegion(origin=origin, size=0x1000, cached=False))
+        memory = self.memory
+        if memory.address_width != soc.bus.address_width:  # LiteX's bridges want both alike
+            memory = AXIInterface(data_width=memory.data_width, address_width=soc.bus.address_width, id_width=memory.id_width)
+            self.comb += self.memory.connect(memory)
+        soc.bus.add_master(name, memory)
+        if soc.irq.enabled:
+            soc.irq.add(name, use_loc_if_exists=True)
 
     @staticmethod
     def add_sources(platform, file_list="cchip.f"):

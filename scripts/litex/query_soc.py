@@ -72,9 +72,7 @@ def system(words, memory):
     from litex.build.io import CRG
     from litex.build.sim import SimPlatform
     from litex.gen import LiteXModule
-    from litex.soc.integration.soc import SoCRegion
     from litex.soc.integration.soc_core import SoCCore
-    from litex.soc.interconnect.axi import AXIInterface
     from litex.soc.interconnect.csr import CSRStorage
 
     class Console(LiteXModule):
@@ -93,11 +91,7 @@ def system(words, memory):
             self.console = Console(platform.request("console"))
             self.csr.add("console", n=0)
             self.chip = CollisionChip(platform, **PARAMETERS)
-            self.bus.add_slave("chip", self.chip.bus, SoCRegion(origin=REGISTERS, size=0x1000, cached=False))
-            bus = AXIInterface(data_width=WIDTH, address_width=32, id_width=self.chip.memory.id_width)
-            self.comb += self.chip.memory.connect(bus)
-            self.bus.add_master("chip", bus)
-            self.irq.add("chip", use_loc_if_exists=True)
+            self.chip.add_to(self, origin=REGISTERS)
 
     platform = SimPlatform("SIM", [("sys_clk", 0, Pins(1)), ("sys_rst", 0, Pins(1)),
                                    ("console", 0, Subsignal("data", Pins(8)), Subsignal("valid", Pins(1)))])

@@ -441,7 +441,7 @@ Rows broad_phase_layout() {
                {bit("address valid", "m_axi_arvalid"), bit("address ready", "m_axi_arready"),
                 vector("address", "m_axi_araddr", 64, Radix::hexadecimal), bit("beat valid", "m_axi_rvalid"),
                 vector("ID", "m_axi_rid", 5, Radix::decimal), bit("last", "m_axi_rlast")}) +
-         group("5 box test", {bit("valid", get + "m_pair_valid"), bit("ready", get + "m_pair_ready"),
+         group("5 box test", {bit("valid", get + "m_pair_valid"), bit("taken next", get + "m_pair_soon"),
                               vector("place", get + "m_pair_place", 6, Radix::decimal),
                               vector("context", get + "m_pair_context", 4, Radix::decimal),
                               vector("children B, A", get + "m_pair_children", 8, Radix::binary)}) +
@@ -451,7 +451,8 @@ Rows broad_phase_layout() {
                              vector("leaves", traversal + "s_verdict_leaves", 16, Radix::binary),
                              vector("best", traversal + "s_verdict_best", 4, Radix::decimal)}) +
          group("7 stack",
-               {bit("push", traversal + "push_q7"), vector("entry", traversal + "stack_addr", 10, Radix::decimal)}) +
+               {bit("push", traversal + "push8"), vector("context", traversal + "context_q8", 4, Radix::decimal),
+                vector("entry", traversal + "at8", 6, Radix::decimal)}) +
          group("8 leaves", {bit("valid", "m_leaf_valid"), vector("context", "m_leaf_context", 4, Radix::decimal),
                             vector("epoch", "m_leaf_epoch", 2, Radix::decimal),
                             vector("kinds B, A", "m_leaf_kinds", 4, Radix::binary), bit("result", "s_result_valid"),
@@ -488,7 +489,7 @@ Rows chip_layout(unsigned slot_count) {
                 vector("address", "m_axi_araddr", 64, Radix::hexadecimal), bit("beat valid", "m_axi_rvalid"),
                 vector("ID", "m_axi_rid", 6, Radix::decimal), bit("last", "m_axi_rlast")}) +
          group("4 node pairs",
-               {bit("box test", broad + "u_get_data.m_pair_valid"), bit("ready", broad + "u_get_data.m_pair_ready"),
+               {bit("box test", broad + "u_get_data.m_pair_valid"), bit("taken next", broad + "u_get_data.m_pair_soon"),
                 bit("verdict", broad + "u_traversal.s_verdict_valid"), bit("expanded", "count_step")}) +
          group("5 leaf pairs",
                {bit("valid", "leaf_valid"), vector("context", "leaf_context", 4, Radix::decimal),

@@ -86,6 +86,8 @@ FILL = "rtl/memory/cchip_cache_fill.v"
 QUERY_RING = "rtl/chip/cchip_query_ring.v"
 RECORD_RING = "rtl/chip/cchip_record_ring.v"
 RESULT = "rtl/chip/cchip_calc_result.v"
+CHIP = "rtl/chip/cchip_chip.v"
+CHIP_REGS = "rtl/regs/cchip_chip_regs.v"
 # Tasks that take minutes; --quick proves the others, which take seconds.
 SLOW = {("cchip_bv_lane_b", "bounded"), ("cchip_swap_sequencer", "prove"), ("cchip_swap_sequencer", "bounded"), ("cchip_slot_ledger", "prove"),
         ("cchip_dispatcher", "bounded"), ("cchip_dispatcher", "bounded_2"), ("cchip_descriptor_queues", "bounded"),
@@ -177,6 +179,10 @@ MUTANTS = [
     ("cchip_calc_result order", RESULT, "if (judged_valid && !emitted_q) begin", "if (judged_valid && !emitted_q && !s_done_valid) begin"),
     ("cchip_calc_result bounded", RESULT, "emitted_q      <= ~record_q[`CCHIP_DONE_RECORD_DONE] & left_q == 4'd0;", "emitted_q      <= left_q == 4'd0;"),
     ("cchip_calc_result bounded", RESULT, "wire complete = count_q[9:8] == 2'd0;", "wire complete = count_q[9] == 1'b0;"),
+    # irq stays 1 as its status is written; falls at the write of another register; an event on the clock of its clear is lost
+    ("cchip_chip prove", CHIP, "<= |(status & status_enable) & ~status_write;", "<= |(status & status_enable);"),
+    ("cchip_chip prove", CHIP_REGS, "assign hwif_out_interrupt_status_write = strobe_q[1];", "assign hwif_out_interrupt_status_write = strobe_q[2];"),
+    ("cchip_chip prove", CHIP_REGS, "wstrb_q[0]))) | hwif_in_interrupt_status_record_hwset;", "wstrb_q[0]))) | (hwif_in_interrupt_status_record_hwset & ~strobe_q[1]);"),
     # late beats reach the next request; a place that is owed is asked for again, also if its address is taken as the request
     # comes; a read counts on where the one before it ended; what the beat before has closed, and its count, is not seen; an error is forgotten; a line
     # that is too long continues; an address is taken back
@@ -192,7 +198,7 @@ MUTANTS = [
     # rules of the bus: an address that follows ready; a reset that leaves an address on offer; an attribute that follows ready
     ("cchip_axi_read bounded", READ_ADDRESS, "{line_q, 6'd0};", "{line_q[57:1], line_q[0] & m_axi_arready, 6'd0};"),
     ("cchip_bitstream_fetch bounded", FETCH, "arvalid_q  <= 1'b0;", "arvalid_q  <= arvalid_q;"),
-    ("cchip_axi_write bounded", WRITE, "m_axi_awcache = 4'b0010;", "m_axi_awcache = {3'b001, m_axi_awready};"),
+    ("cchip_axi_write bounded", WRITE, "m_axi_awcache = CACHE[3:0];", "m_axi_awcache = {CACHE[3:1], m_axi_awready};"),
     # a response that comes late answers the next write; one that comes before the data is taken for theirs; a burst leaves its
     # line; more writes than can be counted; data of another write end a burst; writes of two clients are mixed; a refused
     # write is answered at once

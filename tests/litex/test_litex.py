@@ -19,22 +19,20 @@ sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "scripts/litex")]
 from tools import run, tool  # noqa: E402
 
 
-def system(parameters):
+def system(parameters, standard="axi", width=128):
     """A system of a bus master with no program, the chip and a memory."""
     from collisionchip import CollisionChip
     from litex.build.generic_platform import Pins
     from litex.build.io import CRG
     from litex.build.sim import SimPlatform
-    from litex.soc.integration.soc import SoCRegion
     from litex.soc.integration.soc_core import SoCMini
 
     class System(SoCMini):
         def __init__(self, platform):
-            SoCMini.__init__(self, platform, clk_freq=100e6, bus_standard="axi", bus_data_width=128,
-                             bus_address_width=64, cpu_type=None, ident="chip")
+            SoCMini.__init__(self, platform, clk_freq=100e6, bus_standard=standard, bus_data_width=width,
+                             bus_address_width=64 if standard == "axi" else 32, cpu_type=None, ident="chip")
             self.chip = CollisionChip(platform, **parameters)
-            self.bus.add_slave("chip", self.chip.bus, SoCRegion(origin=0x9000_0000, size=0x1000, cached=False))
-            self.bus.add_master("chip", self.chip.memory)
+            self.chip.add_to(self, origin=0x9000_0000)
             self.add_ram("memory", origin=0x4000_0000, size=0x10000)
             self.comb += platform.request("irq").eq(self.chip.ev.irq)
 
@@ -162,8 +160,8 @@ class Registers(unittest.TestCase):
 
 
 class Elaboration(unittest.TestCase):
-    def check(self, **parameters):
-        platform, made = system(parameters)
+    def check(self, standard="axi", **parameters):
+        platform, made = system(parameters, standard)
         text = platform.get_verilog(made, name="system").main_source
         instance = re.search(r"^cchip_chip .*?^\);", text, re.M | re.S)[0]
         connected = set(re.findall(r"\.(\w+)\s*\(", instance))
@@ -185,6 +183,18 @@ class Elaboration(unittest.TestCase):
 
     def test_parameters(self):
         self.check(QUERIES=8, MISSES=16)
+
+    def test_other_buses(self):
+        for standard in ("wishbone", "axi-lite"):
+            with self.subTest(standard=standard):
+                self.check(standard)
+
+    def test_bus_on_which_records_arrive_in_parts(self):
+        for standard in ("axi", "axi-lite", "wishbone"):
+            for width in (32, 64):
+                with self.subTest(standard=standard, width=width):
+                    with self.assertRaisesRegex(ValueError, rf"^chip: the SoC's bus \({standard}\) has {width} bit, .*bus_data_width=128$"):
+                        system({}, standard, width)
 
 
 if __name__ == "__main__":

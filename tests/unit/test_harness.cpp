@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The harness must find the defects that it looks for, on a module that breaks one rule at a time.
 #include <Vbad_stream.h>
+#include <Vcchip_skid_buffer.h>
 
 #include <catch2/catch.hpp>
 #include <cchip/machines/pair_port.hpp>
@@ -207,6 +208,26 @@ TEST_CASE("harness: a failure leaves a wave and names it", "[unit][harness]") {
   std::filesystem::remove(wave(good));
   CHECK_NOTHROW(with_wave_on_failure(good, [&](const SimulationOptions& options) { run(Fault::none, options); }));
   CHECK(!std::filesystem::exists(wave(good)));
+}
+
+TEST_CASE("harness: a waveform of a model without one is an error", "[unit][harness]") {
+  SimulationOptions options;
+  options.trace_path = wave("harness_test_none");
+  CHECK_THROWS_WITH(Simulation<Vcchip_skid_buffer>(options),
+                    options.trace_path +
+                        ": no waveform, the model was built without; run: make wave-of "
+                        "MODEL=Vcchip_skid_buffer");
+  CHECK_NOTHROW(with_wave_on_failure(
+      "harness_test_none", [](const SimulationOptions& given) { Simulation<Vcchip_skid_buffer> simulation(given); }));
+  int runs = 0;
+  CHECK_THROWS_AS(with_wave_on_failure("harness_test_none",
+                                       [&](const SimulationOptions& given) {
+                                         Simulation<Vcchip_skid_buffer> simulation(given);
+                                         ++runs;
+                                         throw std::out_of_range("mine");
+                                       }),
+                  std::out_of_range);
+  CHECK(runs == 2);
 }
 
 TEST_CASE("harness: other exceptions also leave a wave", "[unit][harness]") {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every signal of the GTKWave layout must be in the waveform that it belongs to.
+#include <Vbroad_phase.h>
 #include <gtkwave/fstapi.h>
 
 #include <catch2/catch.hpp>
@@ -7,6 +8,9 @@
 #include <cchip/internal/wire/axis.hpp>
 #include <cchip/internal/wire/code_names.hpp>
 #include <cchip/machines/rtl_engine.hpp>
+#include <cchip/machines/simulated_chip.hpp>
+#include <cchip/machines/simulated_subsystem.hpp>
+#include <cchip/sim/simulation.hpp>
 #include <cchip/sim/wave_on_failure.hpp>
 #include <cchip/waves/wave_layout.hpp>
 #include <cstdint>
@@ -45,6 +49,26 @@ std::set<std::string> signals_of(const std::string& fst) {
   for_each_signal(reader, [&](fstHandle, const std::string& name) { names.insert(name); });
   fstReaderClose(reader);
   return names;
+}
+
+/// Signals that the layout names, all of which must be in the waveform beside it.
+int check_signals(const std::string& stem) {
+  const std::set<std::string> signals = signals_of(stem + ".fst");
+  REQUIRE(signals.size() > 100);
+  std::ifstream file(stem + ".gtkw");
+  int named = 0;
+  for (std::string line; std::getline(file, line);) {
+    if (line.front() != '+' && line.front() != '#') continue;
+    std::istringstream words(line);
+    for (std::string word; words >> word;) {  // "(3)TOP.name[7:0]"
+      const auto at = word.find("TOP.");
+      if (at == std::string::npos) continue;
+      INFO(line.substr(0, 80));
+      CHECK(signals.count(word.substr(at)) == 1);
+      ++named;
+    }
+  }
+  return named;
 }
 
 /// A row of a layout that shows names, and the names of its file by the value as GTKWave prints it.
@@ -224,11 +248,9 @@ TEST_CASE("harness: the layout names signals that exist", "[unit][harness]") {
   pair.a.kind = kinds_of(id)[0];
   pair.b.kind = kinds_of(id)[1];
   make_rtl_engine(options)->run({pair}, PairMode::directed);
-  const std::set<std::string> signals = signals_of(options.trace_path);
-  REQUIRE(signals.size() > 100);
+  CHECK(check_signals(sim::wave_folder() + "/harness_layout_" + to_name(id)) > 100);
 
   std::ifstream file(sim::wave_folder() + "/harness_layout_" + to_name(id) + ".gtkw");
-  int named = 0;
   std::set<std::string> groups;
   bool dumpfile = false;
   bool savefile = false;
@@ -236,23 +258,39 @@ TEST_CASE("harness: the layout names signals that exist", "[unit][harness]") {
     dumpfile = dumpfile || line == "[dumpfile] \"" + options.trace_path + "\"";
     savefile = savefile || line == "[savefile] \"" + sim::wave_folder() + "/harness_layout_" + to_name(id) + ".gtkw\"";
     if (line.front() == '-') groups.insert(line.substr(1));
-    if (line.front() != '+' && line.front() != '#') continue;
-    std::istringstream words(line);
-    for (std::string word; words >> word;) {  // "(3)TOP.name[7:0]"
-      const auto at = word.find("TOP.");
-      if (at == std::string::npos) continue;
-      INFO(line.substr(0, 80));
-      CHECK(signals.count(word.substr(at)) == 1);
-      ++named;
-    }
   }
   CHECK(dumpfile);
   CHECK(savefile);
-  CHECK(named > 100);
   for (const char* group : {"stream s_pair", "axis controller", "macro stage 1 select", "macro stage 2 axis",
                             "macro stage 3 project", "macro stage 4 compare", "stream m_result"}) {
     CHECK(groups.count(group) == 1);
   }
+}
+
+TEST_CASE("harness: the layouts of chip, subsystem and broad phase name signals that exist", "[unit][harness]") {
+  const std::string which = GENERATE("chip", "chip_1", "chip_2", "subsystem", "broad_phase");
+  CAPTURE(which);
+  const std::string stem = sim::wave_folder() + "/harness_layout_" + which;
+  const std::string fst = stem + ".fst";
+  if (which == "subsystem") {
+    SimulatedSubsystemOptions options;
+    options.trace_path = fst;
+    options.trace_clocks = 10;
+    SimulatedSubsystem(options).write_layout();
+  } else if (which == "broad_phase") {
+    sim::SimulationOptions options;
+    options.trace_path = fst;
+    sim::Simulation<Vbroad_phase> simulation(options);
+    simulation.step();
+    write_broad_phase_gtkw(fst, 0, 10);
+  } else {
+    SimulatedChipOptions options;
+    options.trace_path = fst;
+    options.trace_clocks = 10;
+    if (which != "chip") options.slots = static_cast<unsigned>(which.back() - '0');
+    make_simulated_chip(options);
+  }
+  CHECK(check_signals(stem) > 20);
 }
 
 TEST_CASE("harness: each module of an engine has its waveform", "[unit][harness]") {

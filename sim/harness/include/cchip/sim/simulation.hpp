@@ -30,8 +30,10 @@ struct SimulationOptions {
   /// step() throws SimulationTimeout after this many clocks in all; 0: never.
   std::uint64_t timeout_clocks = 1000000;
   /// FST file to write (its folder is created); no waveform if empty. Until the simulation ends, also by an exception,
-  /// it is called <trace_path>.part.
+  /// it is called <trace_path>.part. A model that was built without waveforms throws SimulationError.
   std::string trace_path;
+  /// Such a model runs, and writes none.
+  bool trace_optional = false;
   /// First traced clock, counted from construction, resets included.
   std::uint64_t trace_from = 0;
   /// Traced clocks; 0: all from trace_from.
@@ -200,6 +202,10 @@ class Simulation {
       } catch (const OutputError& error) {
         throw SimulationError(error.what());
       }
+    } else if (!options_.trace_optional) {
+      throw SimulationError(
+          options_.trace_path +
+          ": no waveform, the model was built without; run: make wave-of MODEL=" + model_->modelName());
     }
   }
 

@@ -35,6 +35,7 @@ void with_wave_on_failure(const std::string& name, Body&& body, SimulationOption
     return;
   } catch (...) {
     options.trace_path = wave_folder() + "/" + name + ".fst";
+    options.trace_optional = true;
     const std::uint64_t clocks = *options.clocks_run;
     if (options.trace_clocks != 0 && clocks >= options.trace_clocks) {
       options.trace_from = clocks + 1 - options.trace_clocks;
