@@ -96,9 +96,9 @@ module cchip_calc_result #(
   // ---- what is known of each number. One memory, one writer: new leaf pairs write it while odd_q
   // is 0, and a result reads it; while odd_q is 1 the result is written back
   reg odd_q;
-  (* ram_style = "distributed", ramstyle = "MLAB" *)
+  `CCHIP_LUT_RAM
   reg [CONTEXT_W+1:0] queries[0:LEAVES-1];  // {epoch, context}
-  (* ram_style = "distributed", ramstyle = "MLAB" *)
+  `CCHIP_LUT_RAM
   reg [9:0] counts[0:LEAVES-1];  // {primitive pairs left - 1, definite hits, hits}
   reg result_q, hit_q, definite_q;
   reg [LEAF_W+1:0] pair_q;

@@ -96,7 +96,7 @@ module cchip_query_ring #(
   end
 
   // ---- the query that leaves
-  (* ram_style = "distributed", ramstyle = "MLAB" *)
+  `CCHIP_LUT_RAM
   reg [DATA_W-1:0] beats[0:AHEAD*BEATS-1];
   reg [511:0] query_q;
   reg query_valid_q;

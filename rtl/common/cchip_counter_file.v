@@ -66,7 +66,7 @@ module cchip_counter_file #(
       | fresh[20+:5] | fresh[25+:5] | fresh[30+:5] | fresh[35+:5];
 
   // ---- memory: read, add, write back on the next clock
-  (* ram_style = "distributed", ramstyle = "MLAB" *)
+  `CCHIP_LUT_RAM
   reg [31:0] mem [0:15];
   reg [31:0] word_q;
   reg [4:0] add_q;

@@ -36,7 +36,7 @@ module cchip_delay #(
       // DEPTH - 1 words and the output register
       localparam integer PTR_W = $clog2(DEPTH - 1);
       localparam [31:0] BEFORE_LAST = DEPTH - 3;
-      (* ram_style = "distributed", ramstyle = "MLAB" *)
+      `CCHIP_LUT_RAM
       reg [WIDTH-1:0] mem [0:DEPTH-2];
       reg [PTR_W-1:0] pointer_q;
       reg last_q;

@@ -61,7 +61,7 @@ module cchip_fifo #(
   genvar b;
   generate
     for (b = 0; b < BANKS; b = b + 1) begin : gen_bank
-      (* ram_style = "distributed", ramstyle = "MLAB" *)
+      `CCHIP_LUT_RAM
       reg [WIDTH-1:0] mem [0:15];
       reg [3:0] read_q;
       reg was_read_q;

@@ -48,7 +48,7 @@ module cchip_ram #(
   generate
     for (b = 0; b < BANKS; b = b + 1) begin : gen_bank
       localparam [31:0] B = b;
-      (* ram_style = "distributed", ramstyle = "MLAB" *)
+      `CCHIP_LUT_RAM
       reg [WIDTH-1:0] mem [0:(1<<WORD_W)-1];
       reg write_q;
       if (BANKS == 1) begin : gen_one

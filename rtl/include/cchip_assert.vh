@@ -13,8 +13,14 @@
 // CCHIP_REFUSE(condition, error) refuses parameters. It belongs in the body of a module: where the
 // condition holds, it instantiates a module that does not exist, named after the mistake, so that
 // every tool stops at elaboration. Otherwise it is nothing.
+//
+// CCHIP_LUT_RAM stands before a small memory, which Vivado, Yosys and Quartus shall make of LUTs.
+// For a family without such memories define it empty.
 `ifndef CCHIP_ASSERT_VH
 `define CCHIP_ASSERT_VH
+`ifndef CCHIP_LUT_RAM
+`define CCHIP_LUT_RAM (* ram_style = "distributed", ramstyle = "MLAB" *)
+`endif
 `define CCHIP_REFUSE(condition, error) if (condition) begin : error error u_error (); end
 `define CCHIP_NARROW(label, bits) `CCHIP_ASSERT(label, (&(bits)) || !(|(bits)))
 `define CCHIP_NARROW_UNSIGNED(label, bits) `CCHIP_ASSERT(label, !(|(bits)))

@@ -180,7 +180,7 @@ module cchip_axi_read #(
   assign m_axi_rready = rready_q;
 
   // {an earlier beat was bad, beats that have come} of each read
-  (* ram_style = "distributed", ramstyle = "MLAB" *)
+  `CCHIP_LUT_RAM
   reg [3:0] progress[0:(1<<ID_W)-1];
 
   // ---- what is known of its read, a clock later. What the clock before changes in it is added

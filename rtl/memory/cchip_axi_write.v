@@ -241,7 +241,7 @@ module cchip_axi_write #(
 
   // ---- answers, and whose they are
   localparam integer CLIENT_W = OUTSTANDING < 2 ? 1 : $clog2(OUTSTANDING);
-  (* ram_style = "distributed", ramstyle = "MLAB" *)
+  `CCHIP_LUT_RAM
   reg [1:0] clients[0:(1<<CLIENT_W)-1];
   reg [CLIENT_W-1:0] write_q, read_q;
   wire [1:0] first_client = clients[read_q];

@@ -119,7 +119,7 @@ module cchip_cache_fill #(
       .m_ready(free),
       .m_data ({fill_slot, fill_code})
   );
-  (* ram_style = "distributed", ramstyle = "MLAB" *)
+  `CCHIP_LUT_RAM
   reg [FRAME_W-1:0] frames[0:MISSES-1];
   always @(posedge clk) if (allocate) frames[allocate_slot] <= allocate_frame;
   assign fill_frame = frames[fill_slot];

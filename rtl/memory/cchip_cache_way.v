@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 // cchip_cache_way: the entries of one way as one port of cchip_cache sees them, in the stages of
 // cchip_cache_port: read in 1 to 3, compared in 4, in 5 it is known whether the line is in flight.
 //   entry        {valid, locked, turn, slot, tag}: slot is that of the read that filled the frame
@@ -75,7 +76,7 @@ module cchip_cache_way #(
   wire [LINE_W-1:0] kept4 = {tag4, line4[SET_W-1:0]};  // the line in this way
   assign match4 = valid4 && kept4 == line4;
 
-  (* ram_style = "distributed", ramstyle = "MLAB" *)
+  `CCHIP_LUT_RAM
   reg [SET_W:0] frames[0:MISSES-1];
   reg match_q5, valid_q5, locked_q5, turn_q5, held_q5, filled_q5, forget_q5;
   reg [SLOT_W-1:0] slot_q5;

@@ -69,7 +69,7 @@ module cchip_bitstream_table #(
   genvar i;
   generate
     for (i = 0; i < 4; i = i + 1) begin : gen_bytes
-      (* ram_style = "distributed", ramstyle = "MLAB" *)
+      `CCHIP_LUT_RAM
       reg [7:0] mem [0:(2<<ENTRY_W)-1];
       always @(posedge clk)
         if (writes && !write_word[1] && write_bytes[i]) mem[write_place] <= write_data[8*i+:8];

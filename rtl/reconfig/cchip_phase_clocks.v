@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 `include "cchip_defs.vh"
 // cchip_phase_clocks: how many clocks the last swap spent in each phase, in distributed RAM.
 //   latency      1 clock from elapsed to the word of its phase; read_clocks is valid from 1 clock
@@ -20,7 +21,7 @@ module cchip_phase_clocks (
 
   localparam integer PHASES = 1 << `CCHIP_PHASE_W;
 
-  (* ram_style = "distributed", ramstyle = "MLAB" *)
+  `CCHIP_LUT_RAM
   reg [31:0] mem [0:PHASES-1];
   always @(posedge clk) mem[phase] <= elapsed;
 

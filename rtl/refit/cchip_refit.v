@@ -108,7 +108,7 @@ module cchip_refit #(
   reg [1:0] others_q, index_q;  // children behind the first; the one in work
   reg cut_exponent_q;
   reg [6:0] depth_q;  // nodes in work
-  (* ram_style = "distributed", ramstyle = "MLAB" *)
+  `CCHIP_LUT_RAM
   reg [FRAME_W-1:0] stack[0:(1<<LEVEL_W)-1];
   reg [FRAME_W-1:0] above_q;  // the node above
   wire [1:0] above_index = above_q[1:0];

@@ -70,7 +70,7 @@ module cchip_leaf_feed #(
   `CCHIP_REFUSE(QUERIES < 2 || QUERIES > 16 || (1 << CONTEXT_W) != QUERIES || LEAF_W < 1,
                 cchip_error_leaf_feed_QUERIES_must_be_2_4_8_or_16_and_LEAF_W_positive)
 
-  (* ram_style = "distributed", ramstyle = "MLAB" *)
+  `CCHIP_LUT_RAM
   reg [MAP_W-1:0] maps[0:QUERIES-1];
   always @(posedge clk)
     if (s_start_valid)

@@ -103,7 +103,7 @@ module cchip_get_data #(
   wire header = s_record[`CCHIP_NODE_PAIR_HEADER];
   wire [QUERIES-1:0] asks_header = s_valid && header ? ONE_CONTEXT << s_context : {QUERIES{1'b0}};
   wire [QUERIES-1:0] posed = s_pose_valid ? ONE_CONTEXT << s_pose_context : {QUERIES{1'b0}};
-  (* ram_style = "distributed", ramstyle = "MLAB" *)
+  `CCHIP_LUT_RAM
   reg [CONTEXT_W+RECORD_W-1:0] records[0:PLACES-1];
   always @(posedge clk) begin
     if (s_valid) records[s_place] <= {s_context, s_record};
@@ -236,7 +236,7 @@ module cchip_get_data #(
   wire asks_leaf = {{32 - PLACE_W{1'b0}}, s_place} >= FIRST_LEAF;
   wire [23:0] asked_a = s_record[`CCHIP_NODE_PAIR_LINE_A];
   wire [23:0] asked_b = s_record[`CCHIP_NODE_PAIR_LINE_B];
-  (* ram_style = "distributed", ramstyle = "MLAB" *)
+  `CCHIP_LUT_RAM
   reg [CONTEXT_W+5:0] leaf_records[0:(1<<LEAF_W)-1];
   reg [CONTEXT_W+5:0] leaf_record_q, leaf_hold_q;
   reg [PLACE_W-1:0] leaf_place_q;

@@ -87,7 +87,7 @@ module cchip_leaf_queue #(
   wire taken = (valid_q & m_ready) | (drop_q & m_drop_ready);
   assign load = ~work_q;
 
-  (* ram_style = "distributed", ramstyle = "MLAB" *)
+  `CCHIP_LUT_RAM
   reg [EPOCH_W-1:0] epochs[0:QUERIES-1];
   wire live = epochs[context_q] == epoch_q;
   wire judge = work_q && state_q == JUDGE;

@@ -118,7 +118,7 @@ module cchip_line_pairs #(
           .read_addr ({leaf_place[LEAF_W-1:0], leaf_beat}),
           .read_data (leaf_lines[64*p+:64])
       );
-      (* ram_style = "distributed", ramstyle = "MLAB" *)
+      `CCHIP_LUT_RAM
       reg [CODE_W-1:0] codes[0:PLACES-1];
       reg [CODE_W-1:0] code_q, leaf_code_q;
       always @(posedge clk) begin

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 `include "cchip_defs.vh"
 // cchip_node_check: judges the two lines of a node pair, or of two headers, and keeps what they say
 // of the children until the verdict of the box test comes.
@@ -45,7 +46,7 @@ module cchip_node_check #(
   localparam [4:0] STEP_MAX = 5'd18;
 
   // ---- the fields on the first clock, compared on the second, judged on the third
-  (* ram_style = "distributed", ramstyle = "MLAB" *)
+  `CCHIP_LUT_RAM
   reg [49:0] sizes[0:QUERIES-1];  // lines of each image, {B's, A's}, at most 2^24
   reg [49:0] sizes_q1;
   reg valid_q1, valid_q2, valid_q3;
@@ -129,7 +130,7 @@ module cchip_node_check #(
       |no_header3 ? `CCHIP_END_BAD_DESCRIPTOR :
       end_a3 != `CCHIP_END_OK ? end_a3 : end_b3;
 
-  (* ram_style = "distributed", ramstyle = "MLAB" *)
+  `CCHIP_LUT_RAM
   reg [NODES_W-1:0] nodes[0:(1<<PLACE_W)-1];
   reg [NODES_W-1:0] nodes_q;
   always @(posedge clk) begin

