@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The whole chip, small, against the functional model: memory and hosts of every kind, faults, reset at any clock.
+#include <algorithm>
 #include <cchip/machines/simulated_chip_core.hpp>
 #include <models/cchip_chip_core.hpp>
 
@@ -143,7 +144,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_chip_core: an error of the bus or a silent read e
 
     // some reads are never answered: each ends the queries that wait for it; after that everything is right. The first
     // one of all is one of them, because no query has ended by then that could have given up its reads
-    constexpr int silences = TestType::MISSES / 2;
+    constexpr int silences = std::min(TestType::MISSES / 2, 4);  // 20 queries meet no more for certain
     int left = silences;
     bench.memory().read_fault = [&](std::uint64_t line) {
       return image(line) && left > 0 && (left == silences || chance(random, 5)) ? (--left, AxiFault::silence)
@@ -152,7 +153,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_chip_core: an error of the bus or a silent read e
     const Totals silent = check(bench, objects, queries_of(objects, random, 20), {QueryCode::memory});
     REQUIRE(left == 0);
     REQUIRE(silent.codes[static_cast<std::size_t>(QueryCode::memory)] > 0);
-    REQUIRE(bench.memory().silent() == TestType::MISSES / 2);
+    REQUIRE(bench.memory().silent() == silences);
     const Totals after = check(bench, objects, queries_of(objects, random, 20));
     REQUIRE(after.codes[static_cast<std::size_t>(QueryCode::memory)] == 0);
 

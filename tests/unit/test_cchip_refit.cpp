@@ -337,7 +337,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_refit: numbers of all sizes, of lines, origins, s
       REQUIRE(static_cast<int>(end.code) == static_cast<int>(result.code));
       REQUIRE(end.line == tree.numbers[result.line]);
       REQUIRE(end.lines == result.lines);
-      REQUIRE(bench.memory == tree.renumbered(expected));
+      REQUIRE((bench.memory == tree.renumbered(expected)));
       ++codes[end.code];
       for (std::uint32_t i = 1; i < count; ++i) {
         unsigned width = 0;
@@ -418,7 +418,7 @@ TEST_CASE("cchip_refit: every fault ends the refit with its code, and the next o
       bench.memory = start;
       bench.command(command.lines, command.root);
       REQUIRE(bench.end(1000000).code == RefitCode::ok);
-      REQUIRE(bench.memory == frames.moved.lines);
+      REQUIRE((bench.memory == frames.moved.lines));
       ++bins[RefitCode::ok];
     };
     const auto expect_end = [&](RefitCode code, std::uint32_t line) {
@@ -465,7 +465,7 @@ TEST_CASE("cchip_refit: every fault ends the refit with its code, and the next o
       REQUIRE(static_cast<int>(end.code) == static_cast<int>(result.code));
       REQUIRE(end.line == result.line);
       REQUIRE(end.lines == result.lines);
-      REQUIRE(bench.memory == expected);
+      REQUIRE((bench.memory == expected));
       ++bins[end.code];
       // memory that does not answer: a timeout, then nothing until it has answered
       for (const bool reads : {true, false}) {
@@ -525,7 +525,7 @@ TEST_CASE("cchip_refit: every fault ends the refit with its code, and the next o
     bench.memory = start;
     bench.command(0xFEFFFFFFU, command.lines, command.root);
     REQUIRE(bench.end(1000000).code == RefitCode::ok);
-    REQUIRE(bench.memory == frames.moved.lines);
+    REQUIRE((bench.memory == frames.moved.lines));
     // a chain of nodes that is too deep, and one line that all nodes have as their child
     std::vector<Line> chain(Config::LEVELS + 3);
     for (std::uint32_t n = 1; n < chain.size(); ++n) put(chain[n], bvh::inner_field::first, n + 1);
@@ -562,7 +562,7 @@ TEST_CASE("cchip_refit: every fault ends the refit with its code, and the next o
     const auto outcome = model::refit_image(far, {3, 1}, Config::LEVELS);
     bench.command(3, 1);
     expect_end(outcome.code, outcome.line);
-    REQUIRE(bench.memory == far);
+    REQUIRE((bench.memory == far));
     good();
     std::cout << "resets=" << resets;
     for (const auto& [code, count] : bins) std::cout << " code" << static_cast<int>(code) << "=" << count;

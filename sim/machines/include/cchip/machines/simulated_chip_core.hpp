@@ -7,6 +7,7 @@
 #include <cchip/internal/bvh/image.hpp>
 #include <cchip/machines/chip_answer.hpp>
 #include <cchip/sim/axi_lines.hpp>
+#include <cchip/sim/bits.hpp>
 #include <cchip/sim/simulation.hpp>
 #include <cstring>
 #include <string>
@@ -23,7 +24,7 @@ struct ChipOptions {
 };
 
 /// Scoreboard of the rings: every record is looked at when it is read, and what is wrong with it is kept.
-/// \tparam Config names the Verilated class `Model` and DATA_W
+/// \tparam Config names the Verilated class `Model`, DATA_W and LOCKS
 template <class Config>
 class SimulatedChipCore {
  public:
@@ -44,8 +45,10 @@ class SimulatedChipCore {
     m.memory_limit = 100000;
     m.query_base = query_line;
     m.record_base = 4 * record_line;
-    m.lock_first = 1;
-    m.lock_last = 0;
+    for (int lock = 0; lock < Config::LOCKS; ++lock) {  // no line is locked
+      set_bits(m.lock_first, 32 * lock, 32, 1);
+      set_bits(m.lock_last, 32 * lock, 32, 0);
+    }
     m.invalidate_valid = 0;
     m.invalidate_first = 0;
     m.invalidate_last = 0;
