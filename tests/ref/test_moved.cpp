@@ -318,7 +318,7 @@ TEST_CASE("self-contacts: of many faces round one vertex, those of each two face
     const Vec3d hub(0.5, -1, 2);
     constexpr std::uint32_t faces = 150;
     for (std::uint32_t i = 0; i < faces; ++i) {
-      const auto at = [&](std::uint32_t k) {
+      const auto at = [&](std::uint32_t k) -> Vec3d {
         const double angle = 2 * 3.14159265358979 * (k % faces) / faces;
         return hub + Vec3d(std::cos(angle), std::sin(angle), 0.25);
       };
@@ -327,7 +327,9 @@ TEST_CASE("self-contacts: of many faces round one vertex, those of each two face
     std::vector<Contact> expected;
     for (std::uint32_t i = 0; i < faces; ++i) {
       for (std::uint32_t k = i + 1; k < faces; ++k) {
-        Mesh two = {"", fan.vertices, {fan.faces[i], fan.faces[k]}};
+        Mesh two;
+        two.vertices = fan.vertices;
+        two.faces = {fan.faces[i], fan.faces[k]};
         const std::vector<Contact> found = self_contacts(Object(std::move(two)));
         if (!found.empty()) expected.push_back({i, k, found.front().relation});
       }
