@@ -44,7 +44,7 @@ LINKS = {
     "cchip_rtl_receiver": {"rtl_ports", "model"},
     "cchip_rtl_models": {"swap_models"}, "cchip_rtl": {"device", "rtl_ports", "rtl_models", "waves"}, "cchip_app": {"certificate", "device", "mesh_io", "stimulus",
                                                                                "reference", "rtl", "waves"},
-    "cchip": {"app"}, "cchip_levels_core": {"reconfig", "core", "stimulus"},
+    "cchip": {"app"}, "cchip_without_hardware": {"app"}, "cchip_levels_core": {"reconfig", "core", "stimulus"},
     "cchip_levels_lib": {"levels_core", "reference", "rtl", "rtl_models", "waves", "levels_models"},
     "cchip_levels": {"levels_lib"}, "cchip_table1_lib": {"reconfig"}, "cchip_table1": {"table1_lib", "stimulus"},
     "cchip_rc_bench": {"reconfig"}, "cchip_rtl_bench": {"levels_lib", "rtl", "rtl_models"}}
