@@ -76,6 +76,11 @@ Row bit(std::string label, std::string name) { return {Row::What::signal, std::m
 Row vector(std::string label, std::string name, int width, Radix radix) {
   return {Row::What::signal, std::move(label), std::move(name), width, radix};
 }
+/// A bit for each slot; simulators name a vector of one bit with its range.
+Row of_slots(std::string label, const std::string& name, int slots) {
+  return slots == 1 ? Row{Row::What::signal, std::move(label), name + "[0:0]", 1, Radix::binary}
+                    : vector(std::move(label), name, slots, Radix::binary);
+}
 /// A code that is shown by name.
 Row vector(std::string label, std::string name, const Names& names) {
   Row row = vector(std::move(label), std::move(name), names.width, names.radix);
@@ -499,13 +504,11 @@ Rows chip_layout(unsigned slot_count) {
                                bit("vertex", "vertex_valid"), bit("first", "vertex_first"), bit("last", "vertex_last"),
                                vector("number, pair", "pair_name", 8, Radix::hexadecimal),
                                vector("eta", "pair_err", 4, Radix::decimal)}) +
-         group("7 slot",
-               {vector("vertex, slot", "u_slots.vertex_valid", slots, Radix::binary),
-                bit("first", "u_slots.vertex_first"),
-                vector("result, slot", "u_slots.result_valid", slots, Radix::binary), bit("answer", "result_valid"),
-                bit("taken", "result_ready"), field("tag", "result", 34, 0, 16, Radix::hexadecimal),
-                field("hit", "result", 34, 16, 1, Radix::binary),
-                field("definite", "result", 34, 18, 1, Radix::binary)}) +
+         group("7 slot", {of_slots("vertex, slot", "u_slots.vertex_valid", slots), bit("first", "u_slots.vertex_first"),
+                          of_slots("result, slot", "u_slots.result_valid", slots), bit("answer", "result_valid"),
+                          bit("taken", "result_ready"), field("tag", "result", 34, 0, 16, Radix::hexadecimal),
+                          field("hit", "result", 34, 16, 1, Radix::binary),
+                          field("definite", "result", 34, 18, 1, Radix::binary)}) +
          group("8 calcResult", {bit("leaf result", "leaf_result_valid"), bit("taken", "leaf_result_ready"),
                                 bit("judged", "judged_valid"), bit("live", "judged_live"),
                                 vector("tag", "judged_tag", 32, Radix::decimal),

@@ -86,7 +86,7 @@ def pictures(cchip, folder):
     commands = {
         "quads and triangles, curves": "collide cube.obj triangles.obj",
         "quads, curves": "collide cube.obj cube.obj --pose 0.5,0.25,0.125",
-        "quads": "collide cube.obj cube.obj --pose 1,0,0",
+        "quads": "collide cube.obj cube.obj --pose 3,0,0",
         "triangles": "collide triangles.obj far.obj",
         "triangles, curves": "collide triangles.obj triangles.obj --pose 0.05,0.02,0.5,0,30,0",
         "distance": "distance cube.obj far.obj",
