@@ -572,11 +572,11 @@ void warn_of_overlap(const std::string& object, const std::optional<cchip::Conta
                      const cchip::SolidRequest& request) {
   if (!overlap || request.inside != cchip::InsideRule::odd) return;
   const bool cross = overlap->relation == cchip::Relation::crossing;
-  const nb::object text = to_text("solids: faces " + std::to_string(overlap->face_a) + " and " +
-                                  std::to_string(overlap->face_b) + " of " + object +
-                                  (cross ? " cross" : " lie on each other") +
-                                  ": its shells overlap, are there twice or have a wall in common, and space that two "
-                                  "of them share counts as outside; inside='nonzero' counts it as inside");
+  const nb::object text =
+      to_text("solids: faces " + std::to_string(overlap->face_a) + " and " + std::to_string(overlap->face_b) + " of " +
+              object + (cross ? " cross" : " lie on each other") +
+              ": its shells overlap, are there twice or have a wall in common, and space that two "
+              "of them share counts as outside; inside='nonzero' counts it as inside");
   if (PyErr_WarnFormat(PyExc_UserWarning, 1, "%U", text.ptr()) != 0) throw nb::python_error();
 }
 
@@ -1631,7 +1631,8 @@ Raises ValueError: another shape, a vertex that is not finite or beyond 2^1000.)
             }
             return to_tuple(edge);
           },
-          nb::sig("def twisted_edge(self) -> tuple[tuple[float, float, float], tuple[float, float, float], int] | None"),
+          nb::sig(
+              "def twisted_edge(self) -> tuple[tuple[float, float, float], tuple[float, float, float], int] | None"),
           "The first edge that faces run along more often one way than the other: its ends and a face that uses it. "
           "None if the sides of all faces are consistent, as solids(inside='nonzero') needs.")
       .def_prop_ro(
@@ -2185,7 +2186,8 @@ groups, mask: 64 bits each. Two objects are tested if the mask of each has a gro
           },
           "id"_a, "The pose of an object, (4, 4) float64.")
       .def("solids", &solids_of, nb::kw_only(), "device"_a = nb::none(), "inside"_a = "odd",
-           nb::sig("def solids(self, *, device: Device | None = None, inside: str = 'odd') -> list[tuple[int, int, str]]"),
+           nb::sig(
+               "def solids(self, *, device: Device | None = None, inside: str = 'odd') -> list[tuple[int, int, str]]"),
            R"(All pairs that are not disjoint as solids, tuples (id of A, id of B, word of solids()), ascending.
 
 Raises and warns as solids() for pairs of candidates(): both must be closed.)")

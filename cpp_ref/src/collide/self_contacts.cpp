@@ -564,7 +564,9 @@ class SelfSearch {
     std::vector<std::uint32_t> place(mesh_.faces.size());  // in the tree
     // Places of a leaf that it does not need repeat a face with equal numbers.
     for (std::uint32_t p = 0; p < numbers_.size(); ++p) place[tree_.faces()[p]] = p;
-    for (auto& [faces, relation] : found_) {
+    for (auto& entry : found_) {  // no binding: a lambda cannot capture one
+      const std::pair<std::uint32_t, std::uint32_t>& faces = entry.first;
+      Relation& relation = entry.second;
       const Pose here = Pose::Identity();
       const CollisionQuery query = {&object_, &here, &object_, &here};
       any_near_parts(query, {faces.first, faces.second}, [&](std::uint32_t i, std::uint32_t k) {
