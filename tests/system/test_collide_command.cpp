@@ -371,8 +371,10 @@ TEST_CASE("collide: a mesh from standard input", "[system][collide]") {
     CHECK(run_cchip({command, "-", cube_file}).err == "cchip: -: standard input is empty; send a mesh\n");
     CHECK(run_cchip({command, "-", "-"}, off).err ==
           "cchip: -: standard input can be read once only; name a file for all but one\n");
-    CHECK(run_cchip({command, "-", cube_file}, "v 0 0 0\n").err ==
-          "cchip: -: cannot be read as a mesh; give an OBJ, OFF, PLY or STL file\n");
+    CHECK(
+        run_cchip({command, "-", cube_file}, "v 0 0 0\n").err ==
+        "cchip: -: the file holds no faces, only 1 vertices; to ask about a point cloud, name it first, as A, and give "
+        "--points (load_points())\n");
   }
 }
 

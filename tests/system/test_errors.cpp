@@ -281,25 +281,21 @@ TEST_CASE("errors: values that look right", "[system][errors]") {
   check_error({"collide", cube, empty}, "cchip: " + empty + ": the file is empty (0 bytes); write the mesh again");
   const std::string part = folder.write("part.STEP", "ISO-10303-21;");
   check_error({"collide", part, cube}, "cchip: " + part +
-                                           ": holds surfaces of CAD, not a mesh; mesh it first, for example with "
-                                           "`gmsh -2 part.step -o part.stl` or with FreeCAD");
-  for (const std::string end : {"gltf", "3mf"}) {
-    const std::string scene = folder.write("scene." + end, "<xml/>");
-    check_error(
-        {"collide", scene, cube},
-        "cchip: " + scene +
-            ": meshes of this format are not read; in Python load it with trimesh, which keeps its numbers, and "
-            "pass vertices and faces to collisionchip.Object, or convert it to OBJ, OFF, PLY or STL, for example "
-            "with Blender, which rounds them");
-  }
-  for (const std::string end : {"dae"}) {
+                                           ": is STEP (surfaces of CAD, not a mesh), which is not read; mesh it first, "
+                                           "for example with `gmsh -2 part.STEP -o part.stl` or with FreeCAD");
+  for (const auto& [end, name] : {std::pair<std::string, std::string>{"gltf", "glTF"}, {"3mf", "3MF"}}) {
     const std::string scene = folder.write("scene." + end, "<xml/>");
     check_error({"collide", scene, cube},
-                "cchip: " + scene +
-                    ": meshes of this format are not read; convert it to OBJ, OFF, PLY or STL, for example with "
-                    "`assimp export mesh." +
-                    end + " mesh.obj` or with Blender");
+                "cchip: " + scene + ": is " + name +
+                    ", which is not read; convert it with trimesh, which keeps numbers, axes and the places of the "
+                    "parts: `python3 -c \"import trimesh; trimesh.load_mesh('scene." +
+                    end + "').export('part.obj', digits=17)\"`");
   }
+  const std::string scene = folder.write("scene.dae", "<xml/>");
+  check_error({"collide", scene, cube},
+              "cchip: " + scene +
+                  ": is COLLADA, which is not read; convert it to PLY with MeshLab, which keeps axes and units: File, "
+                  "Import Mesh, then File, Export Mesh As (Debian's assimp turns, scales or refuses some of them)");
 }
 
 TEST_CASE("help: every command has its own, with exit codes", "[system][errors]") {
