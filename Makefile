@@ -366,9 +366,9 @@ coverage-bins: ## which situations of two blocks of the chip have met, into docs
 
 coverage-cpp: ## branches of the C++ library that its own tests reach, into docs/develop/coverage.md (half an hour; llvm: scripts/bootstrap --dev)
 	cmake --preset coverage-cpp
-	cmake --build $(COVERAGE)-cpp -j $(JOBS) --target tests/ref/all test_self_contacts test_touching
+	cmake --build $(COVERAGE)-cpp -j $(JOBS) --target tests/lib/all test_self_contacts test_touching
 	rm -rf $(COVERAGE)-cpp/coverage
-	LLVM_PROFILE_FILE=$(CURDIR)/$(COVERAGE)-cpp/coverage/%m.profraw ctest --test-dir $(COVERAGE)-cpp -L '^ref$$' -R '^test_' -j $(JOBS) --timeout 3000
+	LLVM_PROFILE_FILE=$(CURDIR)/$(COVERAGE)-cpp/coverage/%m.profraw ctest --test-dir $(COVERAGE)-cpp -L '^(lib|ref)$$' -R '^test_' -j $(JOBS) --timeout 3000
 	scripts/coverage.py $(COVERAGE)-cpp --cpp --write
 
 bench-certificate: $(RELEASE)/build.ninja ## certificates of answers for pairs of large meshes: all checked, their sizes and times; BENCH_ARGS="--poses 200" for more
@@ -381,7 +381,7 @@ bench-scene: $(RELEASE)/build.ninja ## frames of scenes of 10 to 10,000 moving o
 	$(RELEASE)/bin/scene_speed $(BENCH_ARGS)
 
 # pip brings scikit-build-core and nanobind, of the versions that pyproject.toml names.
-$(PYTHON_TOOLS)/requirements.txt: python/build_requirements.txt
+$(PYTHON_TOOLS)/requirements.txt: lib/python/build_requirements.txt
 	$(VENV) $(PYTHON_TOOLS)
 	$(PYTHON_TOOLS)/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement $<
 	cp $< $@
@@ -402,29 +402,29 @@ sdist: $(PYTHON_TOOLS)/requirements.txt ## pack the sources of the Python packag
 test-sdist: sdist ## build and install the packed sources in a fresh environment and ask a query
 	python3 -m venv --clear build/python/sdist
 	CMAKE_BUILD_PARALLEL_LEVEL=$(JOBS) build/python/sdist/bin/pip install --quiet --disable-pip-version-check dist/*.tar.gz
-	cd build/python/sdist && bin/python ../../../python/examples/robot.py
+	cd build/python/sdist && bin/python ../../../lib/python/examples/robot.py
 
 # a fresh environment below build: what a user gets who installs the wheel
-build/python/venv/installed: wheel python/tests/requirements.txt
+build/python/venv/installed: wheel lib/python/tests/requirements.txt
 	python3 -m venv --clear build/python/venv
-	build/python/venv/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement python/tests/requirements.txt dist/*.whl
+	build/python/venv/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement lib/python/tests/requirements.txt dist/*.whl
 	touch $@
 
 test-python: build/python/venv/installed ## test the Python package; the same scenes through trimesh over python-fcl (PyPI; CCHIP_SEED repeats a run)
-	build/python/venv/bin/python -m pytest --quiet -p no:cacheprovider python/tests
-	build/python/venv/bin/python python/tests/beside_trimesh.py
+	build/python/venv/bin/python -m pytest --quiet -p no:cacheprovider lib/python/tests
+	build/python/venv/bin/python lib/python/tests/beside_trimesh.py
 
 bench-python: build/python/venv/installed ## collide_many() and CollisionManager beside python-fcl and trimesh over it (a minute)
-	build/python/venv/bin/python python/tests/bench.py
+	build/python/venv/bin/python lib/python/tests/bench.py
 
-build/dask/installed: wheel python/tests/dask_requirements.txt
+build/dask/installed: wheel lib/python/tests/dask_requirements.txt
 	python3 -m venv --clear build/dask
-	build/dask/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement python/tests/dask_requirements.txt dist/*.whl
+	build/dask/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement lib/python/tests/dask_requirements.txt dist/*.whl
 	touch $@
 
-test-dask: build/dask/installed ## python/examples/collide_dask.py over a Dask scheduler and two workers on loopback, with workers killed in the middle (CCHIP_SEED repeats a run, DASK_QUERIES=N shortens it)
-	build/dask/bin/python python/tests/over_dask.py $(DASK_QUERIES)
-	build/dask/bin/python -m pytest --quiet -p no:cacheprovider python/tests/test_clash_many.py
+test-dask: build/dask/installed ## lib/python/examples/collide_dask.py over a Dask scheduler and two workers on loopback, with workers killed in the middle (CCHIP_SEED repeats a run, DASK_QUERIES=N shortens it)
+	build/dask/bin/python lib/python/tests/over_dask.py $(DASK_QUERIES)
+	build/dask/bin/python -m pytest --quiet -p no:cacheprovider lib/python/tests/test_clash_many.py
 
 build/readers/requirements.txt: tests/readers/requirements.txt
 	python3 -m venv --clear build/readers || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
@@ -463,7 +463,7 @@ lint: bootstrap ## static checks of RTL, C++, scripts and texts
 	scripts/lint
 
 tidy: build ## clang-tidy over our own C++ (slow)
-	run-clang-tidy -quiet -j $(JOBS) -p $(RELEASE) '^$(CURDIR)/(cpp_ref|sim|bench|tests)/'
+	run-clang-tidy -quiet -j $(JOBS) -p $(RELEASE) '^$(CURDIR)/(lib|cpp_ref|sim|bench|tests)/'
 
 format: ## format our own C++
 	git ls-files -z --cached --others --exclude-standard '*.cpp' '*.hpp' ':!cpp_ref/include/cchip/internal/wire/definitions.hpp' | xargs -0 -r clang-format -i
@@ -478,7 +478,7 @@ export: $(RELEASE)/build.ninja ## one Verilog file per top with constraints, dat
 	scripts/export.py $(EXPORT_ARGS)
 
 install: $(RELEASE)/build.ninja ## install command, libraries, headers and RTL below DESTDIR/PREFIX
-	cmake --build $(RELEASE) -j $(JOBS) --target cchip cchip_shell_files cchip_core cchip_mesh_io cchip_certificate cchip_reference cchip_model cchip_device cchip_reconfig
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip cchip_shell_files cchip_core cchip_mesh_io cchip_certificate cchip_device cchip_wire cchip_reference cchip_model cchip_driver cchip_reconfig
 	$(if $(DESTDIR),DESTDIR="$(abspath $(DESTDIR))") cmake --install $(RELEASE) --prefix "$(PREFIX)"
 
 clean: ## delete what was built

@@ -2,9 +2,9 @@
 # Installed tree below the prefix:
 #   bin/cchip                     command line (if built)
 #   lib/libcchip_*.a              or .so with BUILD_SHARED_LIBS, with include/cchip/ and lib/cmake/collisionchip/:
-#                                 find_package(collisionchip) gives collisionchip::core, ::mesh_io, ::certificate, ::reference,
-#                                 ::model and ::device
-#   lib/pkgconfig/collisionchip.pc   the same for pkg-config: core, mesh_io, model and device
+#                                 find_package(collisionchip) gives collisionchip::core, ::mesh_io, ::certificate and ::device,
+#                                 of cpp_ref (if built) ::wire, ::reference, ::model and ::driver
+#   lib/pkgconfig/collisionchip.pc   the same for pkg-config, without reference
 #   lib/libcchip_reconfig.a       with include/cchip/rc/ (if built): find_package(collisionchip COMPONENTS reconfig) gives
 #                                 collisionchip::reconfig alone, which needs SystemC and nothing of the above
 #   share/collisionchip/rtl       Verilog sources, include folder and file list cchip.f
@@ -14,10 +14,15 @@
 # cpack makes a Debian package of that tree: make deb.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
-find_package(ZLIB QUIET)  # ZLIB_FOUND of cpp_ref is not seen here
+find_package(ZLIB QUIET)  # ZLIB_FOUND of lib is not seen here
 set(CCHIP_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/collisionchip)
 
-install(TARGETS cchip_core cchip_mesh_io cchip_certificate cchip_reference cchip_model cchip_device EXPORT collisionchip
+set(libraries cchip_core cchip_mesh_io cchip_certificate cchip_device)
+if(CCHIP_MODELS)
+  list(APPEND libraries cchip_wire cchip_reference cchip_model cchip_driver)
+  set(CCHIP_PC_MODELS "-lcchip_driver -lcchip_model -lcchip_wire ")
+endif()
+install(TARGETS ${libraries} EXPORT collisionchip
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 file(RELATIVE_PATH CCHIP_LIBDIR_TO_INCLUDEDIR /${CMAKE_INSTALL_LIBDIR} /${CMAKE_INSTALL_INCLUDEDIR})
 if(NOT BUILD_SHARED_LIBS)
@@ -29,11 +34,15 @@ if(NOT BUILD_SHARED_LIBS)
 endif()
 configure_file(${CMAKE_CURRENT_LIST_DIR}/collisionchip.pc.in ${PROJECT_BINARY_DIR}/collisionchip.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/collisionchip.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/cpp_ref/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/lib/include/ ${PROJECT_BINARY_DIR}/lib/forward/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   FILES_MATCHING PATTERN "*.hpp")
+if(CCHIP_MODELS)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/cpp_ref/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+    FILES_MATCHING PATTERN "*.hpp")
+endif()
 if(CCHIP_COMMAND)
   file(RELATIVE_PATH libdir_from_bindir /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
-  if(NOT DEFINED CMAKE_INSTALL_RPATH)  # as cpp_ref/CMakeLists.txt for the libraries
+  if(NOT DEFINED CMAKE_INSTALL_RPATH)  # as CchipLibrary.cmake for the libraries
     set(here "$ORIGIN")
     if(APPLE)
       set(here "@loader_path")

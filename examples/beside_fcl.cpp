@@ -6,8 +6,8 @@
 #include <fcl/narrowphase/collision_request.h>
 #include <fcl/narrowphase/collision_result.h>
 
-#include <cchip/device/device.hpp>
-#include <cchip/mesh/shapes.hpp>
+#include <cchip/device.hpp>
+#include <cchip/shapes.hpp>
 #include <iostream>
 #include <set>
 #include <utility>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cchip/device/device.hpp>
-#include <cchip/mesh/shapes.hpp>
+#include <cchip/device.hpp>
+#include <cchip/shapes.hpp>
 #include <iostream>
 
 int main() {  // a gear comes down on a torus

@@ -5,8 +5,8 @@
 #define CCHIP_EXAMPLES_PARTS_HPP
 
 #include <array>
-#include <cchip/geometry/pose.hpp>
-#include <cchip/mesh/mesh.hpp>
+#include <cchip/mesh.hpp>
+#include <cchip/pose.hpp>
 #include <cmath>
 #include <cstdint>
 #include <vector>

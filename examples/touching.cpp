@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Parts that are apart, touch or cross: docs/cpp/touching.md.
-#include <cchip/device/device.hpp>
+#include <cchip/device.hpp>
 #include <cmath>
 #include <iostream>
 

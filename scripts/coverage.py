@@ -175,7 +175,7 @@ def cpp_table(build):
         if not all(sides):
             never = "never false" if sides[0] else "never true" if sides[1] else "neither"
             missing.append(f"{name}:{line}:{column}: branch {never}: {lines_of[name, line][1]}")
-    lines = ["| room of cpp_ref/src | lines | reached | branches | reached |", "|---|---|---|---|---|"]
+    lines = ["| room of lib/src | lines | reached | branches | reached |", "|---|---|---|---|---|"]
     for room in [*sorted(set(rows) - {"all"}), "all"]:
         row = rows[room]
         lines.append(f"| {room} | {row['lines']} | {share(row['lines reached'], row['lines'])} | {row['branches']} | {share(row['branches reached'], row['branches'])} |")

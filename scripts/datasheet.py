@@ -742,7 +742,7 @@ def check():
     index = ROOT / "docs" / "README.md"
     found += [f"docs/README.md: no link to modules/{module}.md" for module in rtl_files()
               if f"(modules/{module}.md)" not in index.read_text()]
-    folders = [ROOT / name / "README.md" for name in ("rtl", "sim", "cpp_ref", "bench", "tests")]
+    folders = [ROOT / name / "README.md" for name in ("rtl", "sim", "lib", "cpp_ref", "bench", "tests")]
     for path in [README, ROOT / "CONTRIBUTING.md", *folders, *sorted((ROOT / "docs").rglob("*.md"))]:
         for name in re.findall(r"`((?:tests|bench)/[\w/]+\.cpp)`", path.read_text()):
             if not (ROOT / name).exists():

@@ -46,7 +46,7 @@ OUT = ROOT / "build" / "mutants_cpp"
 TREE = OUT / "tree"
 PAGE = ROOT / "docs" / "develop" / "mutants.md"
 ALIVE = ROOT / "docs" / "figures" / "mutants_cpp_alive.csv"
-ROOMS = ("exact", "cpu", "collide")
+ROOMS = ("exact", "judge", "query", "search")
 # test cases that time nothing and write nothing
 TESTS = ("test_touching", "test_intersections", "test_self_contacts", "test_points", "test_along", "test_certificate", "test_solids", "test_collide", "test_distance")
 SWAPS = {"<": "<=", "<=": "<", ">": ">=", ">=": ">", "==": "!=", "!=": "==", "+": "-", "-": "+", "&&": "||", "||": "&&"}
@@ -74,7 +74,7 @@ namespace { struct Reach { ~Reach() {
 
 
 def mine(path):
-    return path.parent.name in ROOMS and path.parent.parent == TREE / "cpp_ref" / "src"
+    return path.parent.name in ROOMS and path.parent.parent == TREE / "lib" / "src"
 
 
 def tracked():
@@ -113,7 +113,7 @@ def commands():
     found = {}
     for entry in json.loads((OUT / "build" / "compile_commands.json").read_text()):
         path = pathlib.Path(entry["file"])
-        if path.parent.name in ROOMS and path.parent.parent == TREE / "cpp_ref" / "src" and path not in found:
+        if path.parent.name in ROOMS and path.parent.parent == TREE / "lib" / "src" and path not in found:
             parts = shlex.split(entry["command"])[1:]
             keep, skip = [], False
             for part in parts:
@@ -310,7 +310,7 @@ def explained(mutants, results):
     wrong = []
     for number, row in found.items():
         path, line, change = mutants.get(number, ("", 0, "none"))
-        wrong.append(wrong_sentence(ALIVE, row, f"{path.removeprefix('cpp_ref/')}:{line} {change}", "killed" not in results.get(number, {})))
+        wrong.append(wrong_sentence(ALIVE, row, f"{path.removeprefix('lib/')}:{line} {change}", "killed" not in results.get(number, {})))
     if any(wrong):
         raise Failed("\n".join(filter(None, wrong)))
     return found

@@ -278,7 +278,7 @@ def arrows():
     for order in module.RTL:
         for i, room in enumerate(order):
             rtl.setdefault(room, set()).update(order[:i])
-    return rtl, module.ROOMS
+    return rtl, {room: used - {"users"} for room, used in module.ROOMS.items() if room != "users"}
 
 
 def barred(uses):
@@ -347,18 +347,20 @@ def graph(picture, uses, names, left, top, width, height):
 def rooms():
     rtl, cpp = arrows()
     spec_folders = {"sim": "sim/harness", "rc": "sim/reconfig", "levels": "sim/systemc"}
-    library = {path.name for path in (ROOT / "cpp_ref" / "src").iterdir() if path.is_dir()}
+    of_lib, of_ref = ({path.name for path in (ROOT / folder / "src").iterdir() if path.is_dir()} for folder in ("lib", "cpp_ref"))
+    of_lib |= {"app", "program"}
     picture = Picture("Rooms of the house and which may use which", 1000, 620)
     picture.text(20, 28, "rtl/: a module may instantiate modules of its own folder and of all folders from which arrows lead to it",
                  12, INK, "bold", "start")
     graph(picture, rtl, lambda node: BLUE, 10, 40, 980, 150)
     but = "".join(f"Exception: {room} does not use {other}. " for room, other in barred(rtl) + barred(cpp))
-    picture.text(20, 226, "cpp_ref/ and sim/: a file may include from its own room and from all rooms from which arrows lead to it",
+    picture.text(20, 226, "lib/, cpp_ref/ and sim/: a file may include from its own room and from all rooms from which arrows lead to it",
                  12, INK, "bold", "start")
     picture.text(20, 246, but, 12, GREY, anchor="start")
-    graph(picture, cpp, lambda node: DONE if node in library else PARTLY, 10, 256, 980, 320)
+    graph(picture, cpp, lambda node: DONE if node in of_lib else BLUE if node in of_ref | {"blocks"} else PARTLY, 10, 256, 980, 320)
     other = ", ".join(f"{room} is {folder}" for room, folder in spec_folders.items())
-    picture.key(20, 594, [(BLUE, "rtl/<room>", 110), (DONE, "cpp_ref/src/<room>", 220),
+    picture.key(20, 594, [(BLUE, "rtl/<room>, cpp_ref/src/<room>, cpp_ref/blocks", 310),
+                          (DONE, "lib/src/<room>, lib/app, lib/program", 250),
                           (PARTLY, f"sim/<room>; {other}", 300)])
     return picture.svg()
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """One line on standard error with a bar, a count and an estimate of the time left; silent unless that is a terminal.
-The twin of sim/stimulus/progress.cpp for scripts."""
+The twin of lib/app/progress.cpp for scripts."""
 import sys
 import threading
 import time

@@ -12,10 +12,12 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 CODE = re.compile(r"\.(cpp|hpp|v|vh|py|sh|cmake|c|h|in|html|tcl|rdl|json)$|(^|/)(CMakeLists\.txt|Makefile|lint|bootstrap|run)$")
 # Room: the files that belong to it, the first that fits; generated files are none of it.
 GENERATED = re.compile(r"internal/wire/(definitions|registers|chip_registers)\.hpp$|^rtl/include/.*\.vh$|^rtl/regs/|^docs/figures/")
-ROOMS = [("rtl", r"^rtl/"), ("library", r"^(lib|cpp_ref)/"), ("command", r"^sim/app/"), ("python", r"^python/(src|collisionchip)/|^python/[^/]*$"),
-         ("simulation", r"^sim/"), ("tests", r"^(tests|python/tests)/"), ("bench", r"^bench/"), ("examples", r"^(examples|python/examples)/"),
+ROOMS = [("rtl", r"^rtl/"), ("command", r"^(lib/app|lib/program|sim/app)/"), ("python", r"^(lib/)?python/(src|collisionchip)/|^(lib/)?python/[^/]*$"),
+         ("tests", r"^(tests|(lib/)?python/tests)/"), ("examples", r"^(examples|(lib/)?python/examples)/"),
+         ("library", r"^(lib/|cpp_ref/(include/cchip|src)/(cpu|collide|mesh|mesh_io|certificate|geometry|device)/)"), ("models and host", r"^cpp_ref/"),
+         ("simulation", r"^sim/"), ("bench", r"^bench/"),
          ("scripts", r"^(scripts|workflow|cmake|\.ci)/|^(Makefile|CMakeLists\.txt)$")]
-PRODUCT = ("rtl", "library", "command", "python")
+PRODUCT = ("rtl", "library", "models and host", "command", "python")
 
 
 def contents(commit):

@@ -4,7 +4,7 @@
 #define CCHIP_TESTS_SEED_PRINTER_HPP
 
 #include <catch2/catch.hpp>
-#include <cchip/sim/seed.hpp>
+#include <cchip/program/seed.hpp>
 #include <iostream>
 
 struct SeedPrinter : Catch::TestEventListenerBase {

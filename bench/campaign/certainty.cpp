@@ -2,8 +2,8 @@
 // True vertices lie off the grid points, on a grid 1024 times finer, so that the exact oracle knows them.
 #include <Eigen/Geometry>
 #include <boost/multiprecision/cpp_int.hpp>
-#include <cchip/internal/exact/oracle.hpp>
 #include <cchip/internal/grid/canonical.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
 #include <cchip/stimulus/pair_source.hpp>
 #include <cmath>
 #include <random>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "certify_sample.hpp"
 
-#include <cchip/certificate/certify.hpp>
-#include <cchip/certificate/check.hpp>
-#include <cchip/cpu/cpu_device.hpp>
-#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/certify.hpp>
+#include <cchip/check.hpp>
+#include <cchip/cpu_device.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
 #include <stdexcept>
 
 #include "grid_mesh.hpp"

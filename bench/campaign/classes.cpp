@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cchip/sim/output_file.hpp>
+#include <cchip/program/output_file.hpp>
 #include <cchip/stimulus/judge.hpp>
 #include <cchip/stimulus/pair_source.hpp>
 #include <optional>

@@ -3,16 +3,16 @@
 // know neither poses nor doubles. Vertices and entries of poses are integers times powers of two, so all points of the
 // world are integers times one power of two, exactly: the oracle gets these integers. Poses of any doubles, of which it
 // must compute with numbers of any length, are a row of their own.
-#include <cchip/collide/collide.hpp>
-#include <cchip/cpu/cpu_device.hpp>
-#include <cchip/internal/exact/oracle.hpp>
-#include <cchip/internal/reference/brute_force.hpp>
+#include <cchip/collide.hpp>
+#include <cchip/cpu_device.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
+#include <cchip/internal/judge/brute_force.hpp>
 #include <cchip/stimulus/pair_source.hpp>
 #include <cmath>
 
 #include "commands.hpp"
 #include "grid_mesh.hpp"
-#include "ref/random_poses.hpp"
+#include "lib/random_poses.hpp"
 
 namespace cchip::campaign {
 namespace {

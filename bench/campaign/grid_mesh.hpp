@@ -5,7 +5,7 @@
 #define CCHIP_CAMPAIGN_GRID_MESH_HPP
 
 #include <cchip/internal/wire/pair.hpp>
-#include <cchip/mesh/mesh.hpp>
+#include <cchip/mesh.hpp>
 #include <cmath>
 #include <vector>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What reaches a primitive test after a bounding volume test: pairs of faces whose 26-DOPs overlap.
-#include <cchip/internal/bvh/dop26.hpp>
-#include <cchip/internal/exact/oracle.hpp>
 #include <cchip/internal/grid/canonical.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
 #include <cchip/internal/grid/local_grid.hpp>
-#include <cchip/mesh/shapes.hpp>
-#include <cchip/mesh_io/mesh_file.hpp>
+#include <cchip/internal/tree/dop26.hpp>
+#include <cchip/mesh_file.hpp>
+#include <cchip/shapes.hpp>
 #include <cchip/stimulus/quads.hpp>
 #include <cmath>
 #include <random>

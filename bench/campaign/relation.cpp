@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Apart, touching, crossing: the exact predicates against the definition, which knows no axes.
-#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
 #include <cchip/stimulus/pair_source.hpp>
 #include <cchip/stimulus/pair_vector.hpp>
 

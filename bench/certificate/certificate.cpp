@@ -5,13 +5,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cchip/certificate/certificate_file.hpp>
-#include <cchip/certificate/certify.hpp>
-#include <cchip/certificate/check.hpp>
-#include <cchip/device/device.hpp>
+#include <cchip/certificate_file.hpp>
+#include <cchip/certify.hpp>
+#include <cchip/check.hpp>
+#include <cchip/device.hpp>
 #include <cchip/machines/simulated_chip.hpp>
-#include <cchip/sim/seed.hpp>
-#include <cchip/stimulus/progress.hpp>
+#include <cchip/program/progress.hpp>
+#include <cchip/program/seed.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>

@@ -4,11 +4,11 @@
 #ifndef CCHIP_BENCH_CHIP_OBJECTS_HPP
 #define CCHIP_BENCH_CHIP_OBJECTS_HPP
 
-#include <cchip/internal/bvh/image.hpp>
-#include <cchip/internal/bvh/place.hpp>
-#include <cchip/internal/bvh/tree.hpp>
+#include <cchip/internal/image/image.hpp>
+#include <cchip/internal/image/place.hpp>
 #include <cchip/internal/model/broad_phase.hpp>
-#include <cchip/mesh/shapes.hpp>
+#include <cchip/internal/tree/tree.hpp>
+#include <cchip/shapes.hpp>
 #include <cchip/sim/axi_lines.hpp>
 #include <optional>
 #include <random>

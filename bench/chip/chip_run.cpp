@@ -6,10 +6,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cchip/cpu/cpu_device.hpp>
-#include <cchip/internal/bvh/place.hpp>
-#include <cchip/sim/seed.hpp>
-#include <cchip/stimulus/progress.hpp>
+#include <cchip/cpu_device.hpp>
+#include <cchip/internal/image/place.hpp>
+#include <cchip/program/progress.hpp>
+#include <cchip/program/seed.hpp>
 #include <cchip/waves/wave_layout.hpp>
 #include <random>
 

@@ -6,7 +6,7 @@
 #include <Vchip_512.h>
 #include <fmt/format.h>
 
-#include <cchip/cpu/cpu_device.hpp>
+#include <cchip/cpu_device.hpp>
 #include <cchip/driver/chip_driver.hpp>
 #include <cchip/driver/chip_host.hpp>
 #include <cchip/machines/chips_machine.hpp>

@@ -11,8 +11,8 @@
 #include <cchip/internal/wire/chip_registers.hpp>
 #include <cchip/machines/chip_machine.hpp>
 #include <cchip/machines/probes.hpp>
-#include <cchip/sim/output_file.hpp>
-#include <cchip/sim/seed.hpp>
+#include <cchip/program/output_file.hpp>
+#include <cchip/program/seed.hpp>
 #include <filesystem>
 #include <map>
 #include <optional>

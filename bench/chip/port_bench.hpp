@@ -5,7 +5,7 @@
 #define CCHIP_BENCH_PORT_BENCH_HPP
 
 #include <cchip/driver/chip_driver.hpp>
-#include <cchip/internal/bvh/image.hpp>
+#include <cchip/internal/image/image.hpp>
 #include <cchip/internal/wire/chip_registers.hpp>
 #include <cchip/machines/chip_answer.hpp>
 #include <cchip/machines/chip_machine.hpp>

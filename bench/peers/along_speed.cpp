@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Time of clear_along() and first_contact(): docs/cpp/along.md.
-#include <cchip/cpu/along.hpp>
-#include <cchip/mesh/shapes.hpp>
+#include <cchip/along.hpp>
+#include <cchip/shapes.hpp>
 #include <chrono>
 #include <iomanip>
 #include <iostream>

@@ -5,7 +5,7 @@
 #define CCHIP_BENCH_ASK_HPP
 
 #include <algorithm>
-#include <cchip/cpu/cpu_device.hpp>
+#include <cchip/cpu_device.hpp>
 #include <cchip/internal/exact/oracle.hpp>
 #include <iterator>
 #include <memory>

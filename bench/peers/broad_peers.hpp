@@ -4,7 +4,7 @@
 #ifndef CCHIP_BENCH_BROAD_PEERS_HPP
 #define CCHIP_BENCH_BROAD_PEERS_HPP
 
-#include <cchip/collide/scene.hpp>
+#include <cchip/scene.hpp>
 #include <limits>
 #include <memory>
 #include <vector>

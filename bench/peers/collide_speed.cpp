@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cchip/mesh/shapes.hpp>
-#include <cchip/sim/output_file.hpp>
-#include <cchip/sim/seed.hpp>
-#include <cchip/stimulus/progress.hpp>
+#include <cchip/program/output_file.hpp>
+#include <cchip/program/progress.hpp>
+#include <cchip/program/seed.hpp>
+#include <cchip/shapes.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>

@@ -5,7 +5,7 @@
 #define CCHIP_BENCH_DISTANCE_COUNT_HPP
 
 #include <algorithm>
-#include <cchip/cpu/distance.hpp>
+#include <cchip/distance.hpp>
 #include <cmath>
 #include <limits>
 #include <string>

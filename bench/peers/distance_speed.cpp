@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cchip/cpu/distance.hpp>
-#include <cchip/device/device.hpp>
+#include <cchip/device.hpp>
+#include <cchip/distance.hpp>
 #include <map>
 #include <random>
 #include <string>

@@ -6,13 +6,13 @@
 #define CCHIP_BENCH_EXACT_DISTANCE_HPP
 
 #include <algorithm>
-#include <cchip/mesh/mesh.hpp>
+#include <cchip/mesh.hpp>
 #include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
 
-#include "distance_oracle.hpp"  // of tests/ref
+#include "distance_oracle.hpp"  // of tests/lib
 
 namespace cchip::testing {
 

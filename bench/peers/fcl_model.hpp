@@ -10,7 +10,7 @@
 #include <fcl/narrowphase/collision_request.h>
 #include <fcl/narrowphase/collision_result.h>
 
-#include <cchip/mesh/mesh.hpp>
+#include <cchip/mesh.hpp>
 #include <memory>
 #include <vector>
 

@@ -2,8 +2,8 @@
 #include "mesh_pairs.hpp"
 
 #include <algorithm>
-#include <cchip/mesh/shapes.hpp>
-#include <cchip/mesh_io/mesh_file.hpp>
+#include <cchip/mesh_file.hpp>
+#include <cchip/shapes.hpp>
 #include <cmath>
 #include <stdexcept>
 

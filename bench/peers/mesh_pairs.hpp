@@ -4,8 +4,8 @@
 #ifndef CCHIP_BENCH_MESH_PAIRS_HPP
 #define CCHIP_BENCH_MESH_PAIRS_HPP
 
-#include <cchip/collide/collide.hpp>
-#include <cchip/mesh/mesh.hpp>
+#include <cchip/collide.hpp>
+#include <cchip/mesh.hpp>
 #include <random>
 #include <string>
 #include <vector>

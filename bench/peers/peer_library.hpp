@@ -4,8 +4,8 @@
 #ifndef CCHIP_BENCH_PEER_LIBRARY_HPP
 #define CCHIP_BENCH_PEER_LIBRARY_HPP
 
-#include <cchip/collide/collide.hpp>
-#include <cchip/mesh/mesh.hpp>
+#include <cchip/collide.hpp>
+#include <cchip/mesh.hpp>
 #include <memory>
 #include <string>
 #include <vector>

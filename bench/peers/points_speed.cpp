@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Time of a query of a point cloud and an object, for docs/cpp/points.md: a room of points as a depth camera sees it,
 // and a body as large as the link of a robot.
-#include <cchip/cpu/point_cloud.hpp>
-#include <cchip/mesh/shapes.hpp>
+#include <cchip/point_cloud.hpp>
+#include <cchip/shapes.hpp>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cchip/mesh_io/mesh_file.hpp>
+#include <cchip/mesh_file.hpp>
 #include <map>
 #include <sstream>
 #include <stdexcept>

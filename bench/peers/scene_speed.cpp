@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cchip/collide/scene.hpp>
-#include <cchip/cpu/cpu_device.hpp>
-#include <cchip/internal/reference/brute_force.hpp>
-#include <cchip/mesh/shapes.hpp>
-#include <cchip/sim/seed.hpp>
+#include <cchip/cpu_device.hpp>
+#include <cchip/internal/judge/brute_force.hpp>
+#include <cchip/program/seed.hpp>
+#include <cchip/scene.hpp>
+#include <cchip/shapes.hpp>
 #include <functional>
 #include <numeric>
 #include <random>

@@ -2,7 +2,7 @@
 #include "touching_cases.hpp"
 
 #include <algorithm>
-#include <cchip/mesh/shapes.hpp>
+#include <cchip/shapes.hpp>
 #include <cmath>
 #include <utility>
 

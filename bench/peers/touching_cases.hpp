@@ -4,8 +4,8 @@
 #ifndef CCHIP_BENCH_TOUCHING_CASES_HPP
 #define CCHIP_BENCH_TOUCHING_CASES_HPP
 
-#include <cchip/geometry/pose.hpp>
-#include <cchip/mesh/mesh.hpp>
+#include <cchip/mesh.hpp>
+#include <cchip/pose.hpp>
 #include <string>
 #include <vector>
 

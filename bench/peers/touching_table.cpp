@@ -3,7 +3,7 @@
 // docs/cpp/touching_stays.md: the same parts at the origin and far away from it, by every library that the build found;
 // --far-cases prints these cases for Python's libraries.
 #include <algorithm>
-#include <cchip/device/device.hpp>
+#include <cchip/device.hpp>
 #include <iostream>
 #include <string>
 #include <vector>

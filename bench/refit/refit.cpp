@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cchip/blocks/refit.hpp>
 #include <cchip/machines/simulated_refit.hpp>
-#include <cchip/models/refit.hpp>
-#include <cchip/sim/seed.hpp>
+#include <cchip/program/seed.hpp>
 #include <chrono>
 #include <exception>
 #include <iostream>

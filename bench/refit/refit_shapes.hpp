@@ -6,11 +6,11 @@
 
 #include <Eigen/Geometry>
 #include <array>
-#include <cchip/collide/object.hpp>
-#include <cchip/internal/bvh/image.hpp>
-#include <cchip/internal/bvh/support_tree.hpp>
-#include <cchip/internal/bvh/tree.hpp>
-#include <cchip/mesh/shapes.hpp>
+#include <cchip/internal/image/image.hpp>
+#include <cchip/internal/tree/support_tree.hpp>
+#include <cchip/internal/tree/tree.hpp>
+#include <cchip/object.hpp>
+#include <cchip/shapes.hpp>
 #include <cmath>
 #include <cstdint>
 #include <random>

@@ -4,8 +4,8 @@
 //
 // usage: bench_sizes [quick]   (quick: small sizes, for a test)
 #include <cchip/cchip.hpp>
-#include <cchip/certificate/certify.hpp>
-#include <cchip/certificate/check.hpp>
+#include <cchip/certify.hpp>
+#include <cchip/check.hpp>
 #include <cmath>
 #include <cstdio>
 #include <ctime>

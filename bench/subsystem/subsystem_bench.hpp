@@ -10,7 +10,7 @@
 
 #include <array>
 #include <cchip/internal/driver/primtest_engine.hpp>
-#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
 #include <cchip/internal/model/point_tri.hpp>
 #include <cchip/internal/model/programme.hpp>
 #include <cchip/internal/wire/bitstream.hpp>

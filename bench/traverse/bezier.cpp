@@ -7,9 +7,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <cchip/cpu/distance.hpp>
-#include <cchip/internal/bvh/dop26.hpp>
-#include <cchip/sim/seed.hpp>
+#include <cchip/distance.hpp>
+#include <cchip/internal/tree/dop26.hpp>
+#include <cchip/program/seed.hpp>
 #include <cmath>
 #include <ctime>
 #include <memory>

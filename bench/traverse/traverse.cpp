@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cchip/cpu/cpu_device.hpp>
-#include <cchip/internal/bvh/place.hpp>
+#include <cchip/cpu_device.hpp>
+#include <cchip/internal/image/place.hpp>
 #include <cchip/internal/model/broad_phase.hpp>
 #include <cchip/machines/simulated_broad_phase.hpp>
-#include <cchip/sim/seed.hpp>
+#include <cchip/program/seed.hpp>
 #include <cchip/waves/wave_layout.hpp>
 #include <set>
 

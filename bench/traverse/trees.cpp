@@ -5,11 +5,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cchip/cpu/cpu_device.hpp>
-#include <cchip/internal/bvh/image.hpp>
-#include <cchip/internal/bvh/place.hpp>
+#include <cchip/cpu_device.hpp>
+#include <cchip/internal/image/image.hpp>
+#include <cchip/internal/image/place.hpp>
 #include <cchip/internal/model/broad_phase.hpp>
-#include <cchip/sim/seed.hpp>
+#include <cchip/program/seed.hpp>
 #include <cmath>
 #include <limits>
 #include <numeric>

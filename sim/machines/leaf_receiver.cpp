@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/internal/bvh/image_line.hpp>
+#include <cchip/internal/image/image_line.hpp>
 #include <cchip/internal/model/leaf_pair.hpp>
 #include <cchip/internal/model/programme.hpp>
 #include <cchip/machines/leaf_receiver.hpp>

@@ -9,7 +9,7 @@
 #include <cchip/machines/pair_port.hpp>
 #include <cchip/machines/probes.hpp>
 #include <cchip/machines/rtl_engine.hpp>
-#include <cchip/sim/output_file.hpp>
+#include <cchip/program/output_file.hpp>
 #include <cchip/sim/simulation.hpp>
 #include <cchip/waves/wave_layout.hpp>
 #include <filesystem>

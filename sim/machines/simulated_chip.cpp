@@ -5,7 +5,7 @@
 #include <Vcchip_refit_axi.h>
 
 #include <algorithm>
-#include <cchip/device/device.hpp>
+#include <cchip/device.hpp>
 #include <cchip/driver/chip_driver.hpp>
 #include <cchip/driver/chip_host.hpp>
 #include <cchip/machines/chip_machine.hpp>

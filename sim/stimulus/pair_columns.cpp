@@ -1,49 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <cchip/internal/geometry/decimal.hpp>
+#include <cchip/program/usage_error.hpp>
 #include <cchip/stimulus/pair_columns.hpp>
-#include <cchip/stimulus/usage_error.hpp>
-#include <cmath>
 #include <optional>
 #include <stdexcept>
 
 namespace cchip {
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
 std::string coordinate_name(char letter, int vertex, int component) {
   return fmt::format("{}{}{}", letter, vertex, "xyz"[component]);
 }
 
-/// What an error message repeats of the user's text: one line, not too long.
-std::string quoted(std::string_view text) {
-  std::string shown = "'";
-  for (const char c : text.substr(0, 40)) shown += static_cast<unsigned char>(c) < ' ' ? '?' : c;
-  return shown + (text.size() > 40 ? "...'" : "'");
-}
-
 }  // namespace
-
-double parse_coordinate(std::string_view text) {
-  const std::string_view digits = trimmed(text);
-  if (digits.empty()) throw std::invalid_argument("the field is empty; write a finite decimal number");
-  const std::optional<double> value = read_decimal(digits);
-  if (!value && has_decimal_comma(digits)) {
-    throw std::invalid_argument(quoted(text) + " has a decimal comma; write a decimal point");
-  }
-  if (!value) throw std::invalid_argument(quoted(text) + " is not a number; write a finite decimal number");
-  if (std::isfinite(*value)) return *value;
-  if (digits.find_first_of("0123456789") != std::string_view::npos) {
-    throw std::invalid_argument(quoted(digits) + " is too large for a double; scale the coordinates down");
-  }
-  throw std::invalid_argument(quoted(text) + " is not finite; write a finite decimal number");
-}
 
 PairColumns::PairColumns(const CsvRow& header, std::string file, const ColumnOptions& options)
     : file_(std::move(file)), names_(header.fields), known_(header.fields.size(), false) {
@@ -59,7 +29,7 @@ PairColumns::PairColumns(const CsvRow& header, std::string file, const ColumnOpt
   if (!expect_) {
     throw row_error(file_, header.line,
                     fmt::format("column {} of --expect is missing; name a column of the file that holds 0 or 1",
-                                quoted(options.expect)));
+                                quoted_field(options.expect)));
   }
 }
 
@@ -84,7 +54,7 @@ PairColumns::PrimitiveColumns PairColumns::find_primitive(const CsvRow& header, 
 PairColumns::Column PairColumns::find(const CsvRow& header, const std::string& name) {
   Column found;
   for (std::size_t i = 0; i < names_.size(); ++i) {
-    if (trimmed(names_[i]) != name) continue;
+    if (trimmed_field(names_[i]) != name) continue;
     if (found) {
       throw row_error(file_, header.line, fmt::format("column {} is there twice; rename or remove one of them", name));
     }
@@ -134,19 +104,19 @@ Primitive PairColumns::parse_primitive(const CsvRow& row, const PrimitiveColumns
 
 Kind PairColumns::parse_kind(const CsvRow& row, const PrimitiveColumns& columns) const {
   if (!columns.kind) return Kind::tri;
-  const std::string_view text = trimmed(row.fields[*columns.kind]);
+  const std::string_view text = trimmed_field(row.fields[*columns.kind]);
   if (text.empty() || text == "tri") return Kind::tri;
   if (text == "quad") return Kind::quad;
   throw row_error(
       file_, row.line,
-      fmt::format("column kind_{}: {} is not a known kind; write tri or quad", columns.letter, quoted(text)));
+      fmt::format("column kind_{}: {} is not a known kind; write tri or quad", columns.letter, quoted_field(text)));
 }
 
 bool PairColumns::parse_expected(const CsvRow& row) const {
-  const std::string_view text = trimmed(row.fields[*expect_]);
+  const std::string_view text = trimmed_field(row.fields[*expect_]);
   if (text == "0" || text == "1") return text == "1";
   throw row_error(file_, row.line,
-                  fmt::format("column {}: {} is not an answer; write 0 or 1", names_[*expect_], quoted(text)));
+                  fmt::format("column {}: {} is not an answer; write 0 or 1", names_[*expect_], quoted_field(text)));
 }
 
 }  // namespace cchip

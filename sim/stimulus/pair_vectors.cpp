@@ -2,7 +2,7 @@
 // Pairs of every class and the results that the bit-exact model expects, for bench_primtest.v.
 //   cchip_pair_vectors KIND FILE PAIRS SEED      KIND: tri_tri, tri_quad, quad_quad; PAIRS: at most 65536
 #include <algorithm>
-#include <cchip/sim/output_file.hpp>
+#include <cchip/program/output_file.hpp>
 #include <cchip/stimulus/campaign.hpp>
 #include <cchip/stimulus/pair_source.hpp>
 #include <cchip/stimulus/pair_vector.hpp>

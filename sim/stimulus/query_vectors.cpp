@@ -6,12 +6,12 @@
 //                                                   triangles alone, for a chip with their test alone (default: and
 //                                                   quads)
 #include <algorithm>
-#include <cchip/internal/bvh/image.hpp>
-#include <cchip/internal/bvh/place.hpp>
-#include <cchip/internal/bvh/tree.hpp>
+#include <cchip/internal/image/image.hpp>
+#include <cchip/internal/image/place.hpp>
 #include <cchip/internal/model/broad_phase.hpp>
-#include <cchip/mesh/shapes.hpp>
-#include <cchip/sim/output_file.hpp>
+#include <cchip/internal/tree/tree.hpp>
+#include <cchip/program/output_file.hpp>
+#include <cchip/shapes.hpp>
 #include <iostream>
 #include <optional>
 

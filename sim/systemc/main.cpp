@@ -8,11 +8,11 @@
 #include <cchip/levels/level.hpp>
 #include <cchip/levels/stimulus_file.hpp>
 #include <cchip/levels/summary.hpp>
-#include <cchip/sim/output_file.hpp>
-#include <cchip/sim/seed.hpp>
-#include <cchip/stimulus/command_line.hpp>
-#include <cchip/stimulus/progress.hpp>
-#include <cchip/stimulus/usage_error.hpp>
+#include <cchip/program/command_line.hpp>
+#include <cchip/program/output_file.hpp>
+#include <cchip/program/progress.hpp>
+#include <cchip/program/seed.hpp>
+#include <cchip/program/usage_error.hpp>
 #include <fstream>
 #include <iostream>
 #include <systemc>

@@ -2,9 +2,9 @@
 #include <fmt/ostream.h>
 
 #include <cchip/levels/stimulus_file.hpp>
-#include <cchip/stimulus/csv_reader.hpp>
+#include <cchip/program/csv_reader.hpp>
+#include <cchip/program/usage_error.hpp>
 #include <cchip/stimulus/pair_columns.hpp>
-#include <cchip/stimulus/usage_error.hpp>
 #include <cmath>
 #include <limits>
 #include <map>

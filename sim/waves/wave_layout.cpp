@@ -4,7 +4,7 @@
 #include <cchip/internal/wire/axis.hpp>
 #include <cchip/internal/wire/code_names.hpp>
 #include <cchip/internal/wire/pair.hpp>
-#include <cchip/sim/output_file.hpp>
+#include <cchip/program/output_file.hpp>
 #include <cchip/waves/wave_layout.hpp>
 #include <charconv>
 #include <cmath>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The CPU device's best instruction set on 64-bit ARM, and whether each one gives the same contacts as no instruction
 // set.
-#include <cchip/cpu/cpu_device.hpp>
-#include <cchip/device/device.hpp>
-#include <cchip/mesh/shapes.hpp>
+#include <cchip/cpu_device.hpp>
+#include <cchip/device.hpp>
+#include <cchip/shapes.hpp>
 #include <iostream>
 #include <string>
 #include <utility>

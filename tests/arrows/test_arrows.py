@@ -10,43 +10,52 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-# Room of C++: the rooms that it may include from. <cchip/<room>/...> and <cchip/internal/<room>/...> of cpp_ref and
-# <cchip/<room>/...> of sim share one list of names.
-CORE = ["geometry", "wire", "grid", "mesh", "exact", "bvh", "collide"]  # each may use those before it
-ROOMS = {room: set(CORE[:i]) for i, room in enumerate(CORE)}
-ROOMS["mesh"] = {"geometry"}  # nothing of the hardware
+# Rooms of the library, lib/src/<room> and <cchip/internal/<room>/...>; each may use those before it. Headers for users are
+# flat and use each other; any room may use them, too.
+LIB = ["geometry", "mesh", "exact", "tree", "judge", "certificate", "search", "query"]
+ROOMS = {room: set(LIB[:i]) for i, room in enumerate(LIB)}
+ROOMS["mesh"] = {"geometry"}
 ROOMS["mesh_io"] = {"geometry", "mesh"}
-ROOMS["certificate"] = set(CORE)
-ROOMS["reference"] = set(CORE)
-ROOMS["model"] = {"geometry", "wire", "grid", "mesh", "bvh"}
-ROOMS["cpu"] = set(CORE) | {"certificate"}  # the CPU's searches
-ROOMS["driver"] = set(CORE) | {"certificate", "cpu"}  # what speaks to hardware; its host gives the CPU what the chip leaves
-ROOMS["device"] = set(CORE) | {"cpu", "driver", "model"}  # what users open: any of the three by its name
-CPP_REF = set(ROOMS)
-ROOMS["cchip.hpp"] = CPP_REF  # the one header for users
-ROOMS["sim"] = set()  # sim/harness
+ROOMS["users"] = {"exact", "certificate"}  # of these only what headers for users bring in: tests/install/headers.py
+LIBRARY = set(ROOMS)
+# Of cpp_ref, what the RTL is held to and its host.
+ROOMS["wire"] = {"geometry"}
+ROOMS["grid"] = {"geometry", "mesh", "exact", "wire"}
+ROOMS["image"] = {"geometry", "mesh", "exact", "tree", "wire"}
+ROOMS["reference"] = {"geometry", "mesh", "exact", "wire", "grid"}
+ROOMS["model"] = {"geometry", "mesh", "tree", "wire", "grid", "image"}  # no arithmetic in common with exact or reference
+ROOMS["blocks"] = ROOMS["model"] | {"model"}  # the RTL's blocks clock by clock, for tests
+ROOMS["driver"] = LIBRARY | {"wire", "grid", "image", "model"}  # what speaks to hardware; its host gives the CPU what a chip leaves
+CPP_REF = {"wire", "grid", "image", "reference", "model", "driver"}
+# Programs, and the simulation.
+ROOMS["program"] = {"geometry"}
+ROOMS["app"] = LIBRARY | {"program"}  # lib/app: cchip, without any hardware
+ROOMS["sim"] = {"geometry", "program"}  # sim/harness
 ROOMS["rc"] = set()  # sim/reconfig
-ROOMS["waves"] = {"geometry", "wire", "sim"}
-ROOMS["stimulus"] = CPP_REF - {"cpu", "driver", "device", "reference", "mesh_io"} | {"sim"}
-ROOMS["models"] = ROOMS["model"] | {"model"}  # the RTL's blocks clock by clock, for tests
-ROOMS["machines"] = CPP_REF | {"sim", "waves"}
-ROOMS["levels"] = CPP_REF | {"sim", "rc", "stimulus", "waves", "machines"}  # sim/systemc
-ROOMS["app"] = CPP_REF | {"sim", "stimulus", "waves", "machines"}
-FOLDERS = {"sim/harness": "sim", "sim/reconfig": "rc", "sim/waves": "waves", "sim/stimulus": "stimulus",
-           "sim/models": "models", "sim/machines": "machines", "sim/systemc": "levels", "sim/app": "app"}
+ROOMS["waves"] = {"geometry", "wire", "sim", "program"}
+ROOMS["stimulus"] = {"geometry", "mesh", "tree", "exact", "wire", "grid", "image", "model", "sim", "program"}
+ROOMS["machines"] = LIBRARY | CPP_REF | {"sim", "waves", "program"}
+ROOMS["levels"] = LIBRARY | CPP_REF | {"sim", "rc", "stimulus", "waves", "machines", "program"}  # sim/systemc
+ROOMS["commands"] = LIBRARY | CPP_REF | {"sim", "stimulus", "waves", "machines", "program", "app"}
+FOLDERS = {"lib/program": "program", "lib/app": "app", "cpp_ref/blocks": "blocks", "sim/harness": "sim",
+           "sim/reconfig": "rc", "sim/waves": "waves", "sim/stimulus": "stimulus", "sim/machines": "machines",
+           "sim/systemc": "levels", "sim/commands": "commands"}
 
 # CMake target: the targets of this project that it may link, directly.
 LINKS = {
-    "cchip_core": set(), "cchip_mesh_io": {"core"}, "cchip_reference": {"core"}, "cchip_certificate": {"core"}, "cchip_model": {"core"},
-    "cchip_device": {"certificate", "core", "model"}, "cchip_harness": {"verilated"}, "cchip_reconfig": set(), "cchip_waves": {"core"},
-    "cchip_models": {"core", "model"},
-    "cchip_stimulus": {"core", "model"}, "cchip_pair_vectors": {"stimulus"}, "cchip_query_vectors": {"stimulus"}, "cchip_rtl_ports": {"core", "harness"},
-    "cchip_rtl_receiver": {"rtl_ports", "model"},
-    "cchip_rtl_models": {"swap_models"}, "cchip_rtl": {"device", "rtl_ports", "rtl_models", "waves"}, "cchip_app": {"certificate", "device", "mesh_io", "stimulus",
-                                                                               "reference", "rtl", "waves"},
-    "cchip": {"app"}, "cchip_without_hardware": {"app"}, "cchip_levels_core": {"reconfig", "core", "stimulus"},
+    "cchip_core": set(), "cchip_mesh_io": {"core"}, "cchip_certificate": {"core"}, "cchip_device": {"certificate", "core"},
+    "cchip_program": {"core"}, "cchip_app": {"certificate", "device", "mesh_io", "program"}, "cchip": {"app", "commands"},
+    "cchip_without_hardware": {"app"},
+    "cchip_wire": {"core"}, "cchip_reference": {"wire"}, "cchip_model": {"wire"}, "cchip_blocks": {"core", "model"},
+    "cchip_driver": {"certificate", "device", "model", "wire"},
+    "cchip_harness": {"verilated"}, "cchip_reconfig": set(), "cchip_waves": {"wire"},
+    "cchip_stimulus": {"core", "model", "program"}, "cchip_pair_vectors": {"stimulus"}, "cchip_query_vectors": {"stimulus"},
+    "cchip_rtl_ports": {"wire", "harness"}, "cchip_rtl_receiver": {"rtl_ports", "model"}, "cchip_rtl_models": {"swap_models"},
+    "cchip_rtl": {"driver", "rtl_ports", "rtl_models", "waves"},
+    "cchip_commands": {"app", "driver", "stimulus", "reference", "rtl", "waves"},
+    "cchip_levels_core": {"reconfig", "core", "stimulus"},
     "cchip_levels_lib": {"levels_core", "reference", "rtl", "rtl_models", "waves", "levels_models"},
-    "cchip_levels": {"levels_lib"}, "cchip_table1_lib": {"reconfig"}, "cchip_table1": {"table1_lib", "stimulus"},
+    "_core": {"certificate", "driver", "mesh_io"}, "cchip_levels": {"levels_lib"}, "cchip_table1_lib": {"reconfig"}, "cchip_table1": {"table1_lib", "stimulus"},
     "cchip_rc_bench": {"reconfig"}, "cchip_rtl_bench": {"levels_lib", "rtl", "rtl_models"}}
 
 # Folders of rtl/: each may instantiate from those before it in its line.
@@ -64,33 +73,55 @@ def files(pattern):
 
 def room_of(name):
     """Room of a C++ file, None if it has none."""
-    found = re.match(r"cpp_ref/(?:include/cchip(?:/internal)?|src)/(?:(\w+)/|cchip\.hpp$)", name)
-    if found:
-        return found.group(1) or "cchip.hpp"
-    return next((room for folder, room in FOLDERS.items() if name.startswith(folder + "/")), None)
+    folder = next((room for folder, room in FOLDERS.items() if name.startswith(folder + "/")), None)
+    if folder:
+        return folder
+    if re.match(r"lib/include/cchip/\w+\.hpp$", name):
+        return "users"
+    found = re.match(r"(?:lib|cpp_ref)/(?:include/cchip/internal|src)/(\w+)/", name) or \
+        re.match(r"cpp_ref/include/cchip/(?!internal/)(\w+)/", name)
+    return found.group(1) if found else None
+
+
+def room_of_include(name, include):
+    """Room of what a file of that name includes, None if it is not of this project or lies beside the file."""
+    if re.match(r"cchip/\w+\.hpp$", include):
+        return "users"
+    found = re.match(r"cchip/(?:internal/)?(\w+)/", include)
+    if found or "/" not in include or not re.match(r"lib/src/|cpp_ref/src/", name):
+        return found.group(1) if found else None
+    return include.split("/")[0] if include.split("/")[0] in ROOMS else None
 
 
 class Arrows(unittest.TestCase):
     def test_every_file_has_a_room(self):
-        homeless = [name for name in files(r"^(cpp_ref|sim)/.*\.(cpp|hpp)$") if room_of(name) not in ROOMS]
+        homeless = [name for name in files(r"^(lib|cpp_ref|sim)/.*\.(cpp|hpp)$")
+                    if not name.startswith("lib/python/") and room_of(name) not in ROOMS]
         self.assertEqual(homeless, [])
         self.assertEqual([folder for folder in FOLDERS if not (ROOT / folder).is_dir()], [])
 
     def test_includes(self):
         wrong = []
-        for name in files(r"^(cpp_ref|sim)/.*\.(cpp|hpp)$"):
+        for name in files(r"^(lib|cpp_ref|sim)/.*\.(cpp|hpp)$"):
+            if name.startswith("lib/python/"):  # over everything
+                continue
             room = room_of(name)
             for include in re.findall(r'^#include [<"]([^>"]+)[>"]', (ROOT / name).read_text(), re.M):
                 if include.startswith("..") or "tests/" in include:
                     wrong.append(f"{name} includes {include}")
-                found = re.match(r"cchip/(?:internal/)?(\w+)/", include)
-                if found and found.group(1) != room and found.group(1) not in ROOMS[room]:
-                    wrong.append(f"{name} includes {include}: {room} may not use {found.group(1)}")
+                used = room_of_include(name, include)
+                if used not in (None, room) and used not in ROOMS[room] | {"users"}:
+                    wrong.append(f"{name} includes {include}: {room} may not use {used}")
         self.assertEqual(wrong, [])
+
+    def test_library_knows_no_hardware(self):
+        named = [name for name in files(r"^lib/(include|src|app|program)/|^lib/CMakeLists.txt$")
+                 if re.search(r"cpp_ref|cchip_(wire|model|driver)\b", (ROOT / name).read_text(errors="replace"))]
+        self.assertEqual(named, [])
 
     def test_links(self):
         wrong = []
-        for name in files(r"^(cpp_ref|sim)/.*CMakeLists\.txt$"):
+        for name in files(r"^(lib|cpp_ref|sim)/.*CMakeLists\.txt$"):
             for target, libraries in re.findall(r"target_link_libraries\(\s*(\w+)\s([^)]*)\)", (ROOT / name).read_text()):
                 linked = set(re.findall(r"\bcchip_(\w+)", libraries)) - {"warnings"}
                 if target not in LINKS:

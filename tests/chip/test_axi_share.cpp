@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
+#include <cchip/program/seed.hpp>
 #include <cchip/sim/axi_share.hpp>
-#include <cchip/sim/seed.hpp>
 #include <deque>
 #include <memory>
 #include <random>

@@ -4,17 +4,17 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cchip/cpu/cpu_device.hpp>
+#include <cchip/blocks/refit.hpp>
+#include <cchip/cpu_device.hpp>
 #include <cchip/driver/chip_driver.hpp>
 #include <cchip/driver/chip_host.hpp>
-#include <cchip/internal/bvh/image.hpp>
-#include <cchip/internal/bvh/support_tree.hpp>
-#include <cchip/internal/bvh/tree.hpp>
+#include <cchip/internal/image/image.hpp>
+#include <cchip/internal/tree/support_tree.hpp>
+#include <cchip/internal/tree/tree.hpp>
 #include <cchip/machines/chips_machine.hpp>
 #include <cchip/machines/simulated_chip.hpp>
-#include <cchip/mesh/shapes.hpp>
-#include <cchip/models/refit.hpp>
-#include <cchip/sim/seed.hpp>
+#include <cchip/program/seed.hpp>
+#include <cchip/shapes.hpp>
 #include <random>
 #include <set>
 

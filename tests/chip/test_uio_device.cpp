@@ -6,14 +6,14 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cchip/device/device.hpp>
+#include <cchip/device.hpp>
 #include <cchip/driver/chip_host.hpp>
 #include <cchip/driver/uio_device.hpp>
 #include <cchip/internal/wire/chip_registers.hpp>
 #include <cchip/machines/chip_answer.hpp>
 #include <cchip/machines/chip_machine.hpp>
-#include <cchip/mesh/shapes.hpp>
-#include <cchip/sim/seed.hpp>
+#include <cchip/program/seed.hpp>
+#include <cchip/shapes.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>

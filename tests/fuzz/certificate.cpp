@@ -2,9 +2,9 @@
 // Any bytes as a file of certificates of two boxes. What is accepted must be true.
 #include <algorithm>
 #include <array>
-#include <cchip/certificate/certificate_file.hpp>
-#include <cchip/certificate/check.hpp>
-#include <cchip/internal/reference/brute_force.hpp>
+#include <cchip/certificate_file.hpp>
+#include <cchip/check.hpp>
+#include <cchip/internal/judge/brute_force.hpp>
 #include <optional>
 #include <sstream>
 #include <stdexcept>

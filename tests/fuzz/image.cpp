@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as an image of an object, with the right CRC. What passes the check is used: queries of the image against
 // itself end.
-#include <cchip/internal/bvh/image.hpp>
-#include <cchip/internal/bvh/place.hpp>
+#include <cchip/internal/image/image.hpp>
+#include <cchip/internal/image/place.hpp>
 #include <cchip/internal/model/broad_phase.hpp>
 
 #include "require.hpp"

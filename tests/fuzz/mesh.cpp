@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as a mesh file: a mesh whose faces name its vertices, or an error of one line. CCHIP_FUZZ_NAME says the
 // format, the file's size whether quads are cut.
-#include <cchip/mesh_io/mesh_file.hpp>
+#include <cchip/mesh_file.hpp>
 #include <stdexcept>
 
 #include "require.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as a CSV file of pairs.
+#include <cchip/program/usage_error.hpp>
 #include <cchip/stimulus/pair_columns.hpp>
-#include <cchip/stimulus/usage_error.hpp>
 #include <sstream>
 #include <utility>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as a CSV file of poses.
-#include <cchip/stimulus/usage_error.hpp>
+#include <cchip/program/usage_error.hpp>
 #include <sstream>
 
 #include "pose.hpp"

@@ -2,7 +2,7 @@
 // Any 64 bytes as the descriptor of a query: it keeps its bits, and the query ends. The objects are as small as the
 // kinds of leaves allow, so that the time goes into descriptors; the target of images descends into trees.
 #include <algorithm>
-#include <cchip/internal/bvh/image.hpp>
+#include <cchip/internal/image/image.hpp>
 #include <cchip/internal/model/broad_phase.hpp>
 #include <vector>
 

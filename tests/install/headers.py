@@ -11,14 +11,14 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-INCLUDE = ROOT / "cpp_ref" / "include"
+INCLUDES = [ROOT / "lib" / "include", ROOT / "cpp_ref" / "include"]
 COMPILER, *FOLDERS = sys.argv[1:] or [None]
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Werror"]
 PAGE = ROOT / "docs" / "cpp" / "README.md"
 
-# Folder of headers for users: what of cchip/internal/ they may bring in. Drivers speak the words of the hardware.
-BROUGHT = {"cchip.hpp": {"exact/intersection.hpp"}, "collide": {"exact/intersection.hpp"},
-           "certificate": {"certificate/exact_points.hpp"},
+# Headers for users: what of cchip/internal/ they may bring in. Drivers speak the words of the hardware.
+BROUGHT = {"cchip.hpp": {"exact/intersection.hpp"}, "intersection.hpp": {"exact/intersection.hpp"},
+           "check.hpp": {"certificate/exact_points.hpp"},
            "driver": {"wire/axis.hpp", "wire/bitstream.hpp", "wire/definitions.hpp", "wire/line.hpp", "wire/pair.hpp", "wire/query.hpp"}}
 
 
@@ -36,14 +36,14 @@ class Headers(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             source, rule = pathlib.Path(folder, "alone.cpp"), pathlib.Path(folder, "alone.d")
             source.write_text(content)
-            run = subprocess.run([COMPILER, "-std=c++17", *WARNINGS, "-fsyntax-only", "-MD", "-MF", rule, "-I", INCLUDE,
+            run = subprocess.run([COMPILER, "-std=c++17", *WARNINGS, "-fsyntax-only", "-MD", "-MF", rule, *(word for own in INCLUDES for word in ("-I", own)),
                                   *(word for other in FOLDERS for word in ("-idirafter", other)), source],
                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
             self.assertEqual(run.returncode, 0, run.stdout)
-            return {name[len(f"{INCLUDE}/"):] for name in rule.read_text().split() if name.startswith(f"{INCLUDE}/")}
+            return {name[len(f"{own}/"):] for name in rule.read_text().split() for own in INCLUDES if name.startswith(f"{own}/")}
 
     def test_table_is_the_public_interface(self):
-        found = sorted(str(path.relative_to(INCLUDE)) for path in INCLUDE.rglob("*.hpp"))
+        found = sorted(str(path.relative_to(own)) for own in INCLUDES for path in own.rglob("*.hpp"))
         self.assertEqual(sorted(listed()), [name for name in found if not name.startswith("cchip/internal/")])
 
     def test_each_compiles_alone(self):

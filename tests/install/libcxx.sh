@@ -10,8 +10,8 @@ if ! echo '#include <string>' | clang++ "${flags[@]}" -x c++ -fsyntax-only - 2> 
   echo "skipped: no clang++ with libc++; install Debian's clang, libc++-14-dev and libc++abi-14-dev"
   exit 77
 fi
-clang++ "${flags[@]}" -I"$source/cpp_ref/include" -I"$source/sim/harness/include" "$source/tests/catch_main.cpp" \
-  "$source/tests/ref/test_decimal.cpp" -o test_decimal
+clang++ "${flags[@]}" -I"$source/lib/include" -I"$source/lib/program/include" "$source/tests/catch_main.cpp" \
+  "$source/tests/lib/test_decimal.cpp" -o test_decimal
 ./test_decimal
 cmake -S "$source" -B library -D CMAKE_CXX_COMPILER=clang++ -D CMAKE_CXX_FLAGS=-stdlib=libc++ -D CMAKE_INSTALL_PREFIX="$PWD/prefix" \
   -D CCHIP_SIMULATION=OFF -D BUILD_TESTING=OFF -D CCHIP_WERROR=ON

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cchip/sim/seed.hpp>
-#include <cchip/stimulus/progress.hpp>
+#include <cchip/program/progress.hpp>
+#include <cchip/program/seed.hpp>
 
 #include "ask.hpp"
 

@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cchip/device/device.hpp>
-#include <cchip/mesh/shapes.hpp>
-#include <cchip/mesh_io/mesh_file.hpp>
-#include <cchip/sim/seed.hpp>
+#include <cchip/device.hpp>
+#include <cchip/mesh_file.hpp>
+#include <cchip/program/seed.hpp>
+#include <cchip/shapes.hpp>
 #include <iostream>
 #include <random>
 

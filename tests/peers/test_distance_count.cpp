@@ -2,7 +2,7 @@
 // The count of wrong answers in docs/cpp/distance.md: libraries that lie in one way each are found out, and so would be
 // distance() by brute force in integers.
 #include <catch2/catch.hpp>
-#include <cchip/mesh/shapes.hpp>
+#include <cchip/shapes.hpp>
 #include <cmath>
 #include <fstream>
 #include <limits>

@@ -2,10 +2,10 @@
 // FCL computes in doubles, so it may err near contact. Where its answer differs from the CPU device's, exact integers
 // decide about the faces in question, and the pose is listed.
 #include <catch2/catch.hpp>
-#include <cchip/device/device.hpp>
+#include <cchip/device.hpp>
 #include <cchip/internal/exact/oracle.hpp>
-#include <cchip/mesh/shapes.hpp>
-#include <cchip/sim/seed.hpp>
+#include <cchip/program/seed.hpp>
+#include <cchip/shapes.hpp>
 #include <iostream>
 #include <random>
 

@@ -9,11 +9,11 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
-#include <cchip/collide/collide.hpp>
+#include <cchip/collide.hpp>
 #include <cchip/internal/exact/intersection.hpp>
 #include <cchip/internal/exact/oracle.hpp>
-#include <cchip/mesh/shapes.hpp>
-#include <cchip/sim/seed.hpp>
+#include <cchip/program/seed.hpp>
+#include <cchip/shapes.hpp>
 #include <cmath>
 #include <random>
 #include <set>

@@ -2,8 +2,9 @@
 // Every row of the table in docs/cpp/touching.md, answered by each device and by the exact oracle, face by face.
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cchip/device/device.hpp>
-#include <cchip/internal/reference/brute_force.hpp>
+#include <cchip/device.hpp>
+#include <cchip/driver/model_device.hpp>
+#include <cchip/internal/judge/brute_force.hpp>
 
 #include "touching_cases.hpp"
 
@@ -51,6 +52,7 @@ void expect(Relation relation) {
   CHECK(greatest == relation);
   const Object a(c.a);
   const Object b(c.b);
+  add_model_device();
   for (const char* device_name : {"cpu", "model"}) {
     INFO(device_name);
     const auto device = open_device(device_name);

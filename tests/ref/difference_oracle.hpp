@@ -7,8 +7,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cchip/geometry/primitive.hpp>
 #include <cchip/internal/wire/pair.hpp>
+#include <cchip/primitive.hpp>
 #include <cstdint>
 #include <optional>
 

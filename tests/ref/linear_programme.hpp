@@ -4,8 +4,8 @@
 #ifndef CCHIP_TESTS_REF_LINEAR_PROGRAMME_HPP
 #define CCHIP_TESTS_REF_LINEAR_PROGRAMME_HPP
 
-#include <cchip/geometry/primitive.hpp>
 #include <cchip/internal/wire/pair.hpp>
+#include <cchip/primitive.hpp>
 
 namespace cchip_test {
 

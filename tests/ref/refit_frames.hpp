@@ -6,10 +6,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cchip/collide/object.hpp>
-#include <cchip/internal/bvh/image.hpp>
-#include <cchip/internal/bvh/support_tree.hpp>
-#include <cchip/models/refit.hpp>
+#include <cchip/blocks/refit.hpp>
+#include <cchip/internal/image/image.hpp>
+#include <cchip/internal/tree/support_tree.hpp>
+#include <cchip/object.hpp>
 #include <cmath>
 #include <random>
 #include <vector>

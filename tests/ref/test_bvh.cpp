@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <boost/multiprecision/cpp_int.hpp>
 #include <catch2/catch.hpp>
-#include <cchip/internal/bvh/image.hpp>
-#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
+#include <cchip/internal/image/image.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <functional>

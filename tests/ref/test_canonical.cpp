@@ -2,9 +2,9 @@
 // Quads on small grids, all or sampled: the hull stays, the form is canonical. The hull is judged by the exact
 // oracle, with a point as partner.
 #include <catch2/catch.hpp>
-#include <cchip/internal/exact/oracle.hpp>
 #include <cchip/internal/grid/canonical.hpp>
 #include <cchip/internal/grid/coplanar.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
 #include <cchip/internal/wire/definitions.hpp>
 #include <set>
 

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
-#include <cchip/device/device.hpp>
+#include <cchip/device.hpp>
 #include <cchip/driver/chip_host.hpp>
-#include <cchip/internal/bvh/image.hpp>
-#include <cchip/internal/bvh/support_tree.hpp>
+#include <cchip/internal/image/image.hpp>
 #include <cchip/internal/model/broad_phase.hpp>
-#include <cchip/sim/seed.hpp>
+#include <cchip/internal/tree/support_tree.hpp>
+#include <cchip/program/seed.hpp>
 #include <functional>
 #include <map>
 #include <optional>

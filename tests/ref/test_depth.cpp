@@ -3,10 +3,10 @@
 // exactly if the cube of half-width eta lies in A - B: every translation of A by a corner of the cube, which is an
 // error that eta allows, must still meet B. The oracle answers that for each of the eight corners and knows no axis.
 #include <catch2/catch.hpp>
-#include <cchip/internal/exact/oracle.hpp>
 #include <cchip/internal/grid/canonical.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
 #include <cchip/internal/model/programme.hpp>
-#include <cchip/sim/seed.hpp>
+#include <cchip/program/seed.hpp>
 #include <cchip/stimulus/campaign.hpp>
 #include <cchip/stimulus/pair_source.hpp>
 #include <limits>

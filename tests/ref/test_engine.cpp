@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <cchip/internal/driver/pair_engine.hpp>
-#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
 #include <cchip/internal/reference/eigen_sat.hpp>
 #include <cchip/internal/wire/axis.hpp>
 #include <map>

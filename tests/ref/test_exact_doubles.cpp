@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The exact oracle on doubles of any magnitude.
 #include <catch2/catch.hpp>
-#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
 #include <cmath>
 #include <limits>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
-#include <cchip/geometry/primitive.hpp>
 #include <cchip/internal/grid/coplanar.hpp>
 #include <cchip/internal/wire/pair.hpp>
+#include <cchip/primitive.hpp>
 
 #include "random_pairs.hpp"
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cchip/internal/model/leaf_pair.hpp>
+#include <cchip/program/seed.hpp>
 #include <cchip/sim/int128.hpp>
-#include <cchip/sim/seed.hpp>
 #include <cmath>
 #include <random>
 #include <vector>

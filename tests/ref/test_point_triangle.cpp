@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sphere of a point and a triangle: the seven axes decide exactly what the distance decides.
 #include <catch2/catch.hpp>
-#include <cchip/sim/seed.hpp>
+#include <cchip/program/seed.hpp>
 #include <iostream>
 #include <map>
 

@@ -2,9 +2,9 @@
 // Apart, touching, crossing (docs/cpp/touching.md): exact predicates against the definition and against small
 // translations.
 #include <catch2/catch.hpp>
-#include <cchip/internal/exact/oracle.hpp>
 #include <cchip/internal/exact/posed_pairs.hpp>
 #include <cchip/internal/grid/canonical.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
 #include <map>
 
 #include "difference_oracle.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What must not change an answer: order, symmetry, translation, scale.
 #include <catch2/catch.hpp>
-#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
 #include <cchip/internal/reference/eigen_sat.hpp>
 
 #include "random_pairs.hpp"

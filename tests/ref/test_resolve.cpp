@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
-#include <cchip/internal/exact/resolve.hpp>
+#include <cchip/internal/grid/resolve.hpp>
 
 using cchip::PairResult;
 using cchip::Primitive;

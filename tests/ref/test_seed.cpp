@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Seeds of the tests.
 #include <catch2/catch.hpp>
-#include <cchip/sim/seed.hpp>
+#include <cchip/program/seed.hpp>
 #include <cstdlib>
 #include <limits>
 #include <string>

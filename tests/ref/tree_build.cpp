@@ -4,9 +4,9 @@
 // two such meshes, and compares its contacts with those of the CPU device.
 #include <sys/resource.h>
 
-#include <cchip/device/device.hpp>
-#include <cchip/geometry/pose.hpp>
-#include <cchip/internal/bvh/image.hpp>
+#include <cchip/device.hpp>
+#include <cchip/internal/image/image.hpp>
+#include <cchip/pose.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdio>

@@ -9,7 +9,7 @@ import subprocess
 import sys
 import tempfile
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python/src/collisionchip"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "lib/python/src/collisionchip"))
 import check  # noqa: E402
 
 cchip, models = sys.argv[1:]

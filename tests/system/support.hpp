@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "cli.hpp"
+#include "hardware.hpp"
 
 namespace cchip::test {
 
@@ -57,7 +58,7 @@ inline Outcome run_cchip(std::vector<std::string> arguments, const std::string& 
   std::istringstream in(input);
   std::ostringstream out;
   std::ostringstream err;
-  const int code = app::run_cli(std::move(arguments), {in, out, err, terminal});
+  const int code = app::run_cli(std::move(arguments), {in, out, err, terminal}, app::hardware());
   return {code, out.str(), err.str()};
 }
 

@@ -2,7 +2,7 @@
 // cchip collide --certificate and cchip check.
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cchip/stimulus/usage_error.hpp>
+#include <cchip/program/usage_error.hpp>
 
 #include "support.hpp"
 

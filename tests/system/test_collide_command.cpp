@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cchip/internal/reference/brute_force.hpp>
-#include <cchip/mesh/shapes.hpp>
-#include <cchip/mesh_io/mesh_file.hpp>
-#include <cchip/sim/seed.hpp>
-#include <cchip/stimulus/usage_error.hpp>
+#include <cchip/internal/judge/brute_force.hpp>
+#include <cchip/mesh_file.hpp>
+#include <cchip/program/seed.hpp>
+#include <cchip/program/usage_error.hpp>
+#include <cchip/shapes.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
@@ -74,7 +74,8 @@ TEST_CASE("collide: times and colours are for a terminal", "[system][collide]") 
   const auto run = [](const std::string& pose, bool person, bool colour) {
     std::istringstream in;
     std::ostringstream out, err;
-    CHECK(run_cli({"collide", cube_file, cube_file, "--pose", pose}, {in, out, err, false, person, colour}) == exit_ok);
+    CHECK(run_cli({"collide", cube_file, cube_file, "--pose", pose}, {in, out, err, false, person, colour},
+                  hardware()) == exit_ok);
     return lines(out.str());
   };
   CHECK(run("5,0,0", true, true).front() == "\x1b[1;32mapart\x1b[0m");
@@ -353,8 +354,8 @@ TEST_CASE("collide: poses are a stream, and - is standard input", "[system][coll
     std::ostringstream err;
     EndlessPoses poses(out);
     std::istream in(&poses);
-    CHECK(run_cli({"collide", cube_file, cube_file, "--poses", "-", "--format", format}, {in, out, err, false}) ==
-          exit_ok);
+    CHECK(run_cli({"collide", cube_file, cube_file, "--poses", "-", "--format", format}, {in, out, err, false},
+                  hardware()) == exit_ok);
     CHECK(poses.rows > 1000);
     CHECK(poses.rows < 10000);
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
-#include <cchip/sim/seed.hpp>
-#include <cchip/stimulus/csv_reader.hpp>
-#include <cchip/stimulus/usage_error.hpp>
+#include <cchip/program/csv_reader.hpp>
+#include <cchip/program/seed.hpp>
+#include <cchip/program/usage_error.hpp>
 #include <random>
 #include <sstream>
 

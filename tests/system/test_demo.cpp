@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
 #include <cchip/internal/reference/eigen_sat.hpp>
-#include <cchip/stimulus/usage_error.hpp>
+#include <cchip/program/usage_error.hpp>
 
 #include "demo.hpp"
 #include "support.hpp"

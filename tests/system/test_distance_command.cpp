@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
-#include <cchip/stimulus/usage_error.hpp>
+#include <cchip/program/usage_error.hpp>
 
 #include "support.hpp"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The dispatcher over the three modules, with the model and the RTL behind it.
 #include <catch2/catch.hpp>
-#include <cchip/internal/exact/oracle.hpp>
 #include <cchip/internal/grid/canonical.hpp>
-#include <cchip/sim/seed.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
+#include <cchip/program/seed.hpp>
 #include <cchip/stimulus/witness.hpp>
 #include <map>
 #include <random>

@@ -2,7 +2,7 @@
 // Wrong input and wrong command lines: one line with place and remedy, nothing on stdout, exit code 2.
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cchip/stimulus/usage_error.hpp>
+#include <cchip/program/usage_error.hpp>
 
 #include "support.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files of other programs at the command line: what it says about them, and that its remedies work.
 #include <catch2/catch.hpp>
-#include <cchip/stimulus/usage_error.hpp>
+#include <cchip/program/usage_error.hpp>
 #include <cstdlib>
 
 #include "support.hpp"

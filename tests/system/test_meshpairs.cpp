@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
-#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
 #include <cchip/internal/grid/local_grid.hpp>
-#include <cchip/mesh_io/mesh_file.hpp>
-#include <cchip/stimulus/csv_reader.hpp>
-#include <cchip/stimulus/usage_error.hpp>
+#include <cchip/mesh_file.hpp>
+#include <cchip/program/csv_reader.hpp>
+#include <cchip/program/usage_error.hpp>
 #include <map>
 
 #include "engines.hpp"

@@ -3,9 +3,9 @@
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>
-#include <cchip/mesh_io/mesh_file.hpp>
-#include <cchip/sim/output_file.hpp>
-#include <cchip/stimulus/usage_error.hpp>
+#include <cchip/mesh_file.hpp>
+#include <cchip/program/output_file.hpp>
+#include <cchip/program/usage_error.hpp>
 #include <map>
 #include <thread>
 

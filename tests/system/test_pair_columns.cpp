@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
+#include <cchip/program/usage_error.hpp>
 #include <cchip/stimulus/pair_columns.hpp>
-#include <cchip/stimulus/usage_error.hpp>
 #include <cmath>
 #include <limits>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
-#include <cchip/internal/exact/oracle.hpp>
-#include <cchip/stimulus/progress.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
+#include <cchip/program/progress.hpp>
 #include <chrono>
 #include <sstream>
 #include <thread>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cchip/stimulus/csv_reader.hpp>
-#include <cchip/stimulus/usage_error.hpp>
+#include <cchip/program/csv_reader.hpp>
+#include <cchip/program/usage_error.hpp>
 #include <nlohmann/json.hpp>
 
 #include "support.hpp"
@@ -258,7 +258,7 @@ TEST_CASE("pairs: a terminal gets a sentence, programs the line", "[system][pair
   const auto run = [](const std::string& format) {
     std::istringstream in(mixed_file());
     std::ostringstream out, err;
-    run_cli({"pairs", "-", "--engine", "exact", "--format", format}, {in, out, err, false, true, false});
+    run_cli({"pairs", "-", "--engine", "exact", "--format", format}, {in, out, err, false, true, false}, hardware());
     return format == "table" ? last_line(out.str()) : last_line(err.str());
   };
   CHECK_THAT(run("table"), Catch::Matchers::Matches("[0-9]+ pairs, [0-9]+ touch(es)?"));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <catch2/catch.hpp>
-#include <cchip/geometry/pose.hpp>
-#include <cchip/sim/seed.hpp>
-#include <cchip/stimulus/usage_error.hpp>
+#include <cchip/pose.hpp>
+#include <cchip/program/seed.hpp>
+#include <cchip/program/usage_error.hpp>
 #include <cmath>
 #include <random>
 

@@ -4,7 +4,7 @@
 // and exact arithmetic on the doubles judge it.
 #include <fmt/format.h>
 
-#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
 #include <cchip/internal/model/programme.hpp>
 #include <cchip/internal/wire/axis.hpp>
 #include <cstring>

@@ -3,9 +3,9 @@
 #include <array>
 #include <boost/multiprecision/cpp_int.hpp>
 #include <catch2/catch.hpp>
+#include <cchip/program/seed.hpp>
 #include <cchip/rc/rc.hpp>
 #include <cchip/rc/timed_control.hpp>
-#include <cchip/sim/seed.hpp>
 #include <cstdlib>
 #include <functional>
 #include <random>

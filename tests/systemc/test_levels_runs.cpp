@@ -5,7 +5,7 @@
 #include <cchip/levels/generator.hpp>
 #include <cchip/levels/level.hpp>
 #include <cchip/levels/summary.hpp>
-#include <cchip/sim/seed.hpp>
+#include <cchip/program/seed.hpp>
 #include <cmath>
 #include <csignal>
 #include <cstdlib>

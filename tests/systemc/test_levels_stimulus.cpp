@@ -6,8 +6,8 @@
 #include <cchip/levels/functional_test.hpp>
 #include <cchip/levels/generator.hpp>
 #include <cchip/levels/stimulus_file.hpp>
-#include <cchip/sim/seed.hpp>
-#include <cchip/stimulus/usage_error.hpp>
+#include <cchip/program/seed.hpp>
+#include <cchip/program/usage_error.hpp>
 #include <functional>
 #include <map>
 #include <random>

@@ -4,7 +4,7 @@
 #include <cchip/internal/wire/registers.hpp>
 #include <cchip/levels/platform.hpp>
 #include <cchip/levels/software_c3.hpp>
-#include <cchip/sim/seed.hpp>
+#include <cchip/program/seed.hpp>
 #include <functional>
 
 using namespace cchip;

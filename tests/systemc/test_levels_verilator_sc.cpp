@@ -11,7 +11,7 @@
 #include <cchip/levels/generator.hpp>
 #include <cchip/levels/simulate.hpp>
 #include <cchip/levels/static_side.hpp>
-#include <cchip/sim/seed.hpp>
+#include <cchip/program/seed.hpp>
 
 using namespace cchip;
 using namespace cchip::levels;

@@ -2,7 +2,7 @@
 // The timed simulation behind Table 1 against closed formulas, in whole picoseconds.
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cchip/sim/seed.hpp>
+#include <cchip/program/seed.hpp>
 #include <experiments.hpp>
 #include <random>
 #include <report.hpp>

@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cchip/internal/bvh/image_fields.hpp>
+#include <cchip/internal/image/image_fields.hpp>
 #include <cchip/internal/model/box_test.hpp>
 #include <cchip/stimulus/boundary.hpp>
 #include <cmath>

@@ -4,8 +4,8 @@
 #ifndef CCHIP_TESTS_UNIT_PAIR_TOOLS_HPP
 #define CCHIP_TESTS_UNIT_PAIR_TOOLS_HPP
 
-#include <cchip/internal/exact/oracle.hpp>
 #include <cchip/internal/grid/coplanar.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
 #include <cchip/internal/model/sat.hpp>
 #include <cchip/stimulus/pair_source.hpp>
 #include <cchip/stimulus/witness.hpp>

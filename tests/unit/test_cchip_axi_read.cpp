@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/models/axi_read.hpp>
+#include <cchip/blocks/axi_read.hpp>
 #include <deque>
 #include <models/cchip_axi_read.hpp>
 

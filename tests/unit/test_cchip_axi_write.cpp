@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/models/axi_write.hpp>
+#include <cchip/blocks/axi_write.hpp>
 #include <deque>
 #include <map>
 #include <models/cchip_axi_write.hpp>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The broad phase whole, under faults: queries end with their code, the others with their answers, nothing hangs.
-#include <cchip/internal/bvh/place.hpp>
-#include <cchip/internal/bvh/tree.hpp>
+#include <cchip/internal/image/place.hpp>
 #include <cchip/internal/model/broad_phase.hpp>
+#include <cchip/internal/tree/tree.hpp>
 #include <cchip/machines/simulated_broad_phase.hpp>
-#include <cchip/mesh/shapes.hpp>
+#include <cchip/shapes.hpp>
 #include <models/cchip_broad_phase_axi.hpp>
 #include <set>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cchip/internal/bvh/image.hpp>
-#include <cchip/internal/bvh/place.hpp>
-#include <cchip/mesh/shapes.hpp>
+#include <cchip/internal/image/image.hpp>
+#include <cchip/internal/image/place.hpp>
+#include <cchip/shapes.hpp>
 #include <deque>
 #include <models/cchip_bv_unit.hpp>
 

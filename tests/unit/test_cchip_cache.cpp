@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/models/cache.hpp>
+#include <cchip/blocks/cache.hpp>
 #include <map>
 #include <models/cchip_cache.hpp>
 

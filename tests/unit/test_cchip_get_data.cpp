@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/models/get_data.hpp>
+#include <cchip/blocks/get_data.hpp>
 #include <cchip/stimulus/boundary.hpp>
 #include <deque>
 #include <map>

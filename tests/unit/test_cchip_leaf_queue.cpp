@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cchip/models/leaf_queue.hpp>
+#include <cchip/blocks/leaf_queue.hpp>
 #include <deque>
 #include <models/cchip_leaf_queue.hpp>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A slot whose modules are exchanged through the configuration port, and what happens when a step is left out.
-#include <cchip/models/reconfig.hpp>
+#include <cchip/blocks/reconfig.hpp>
 #include <models/cchip_pr_slot.hpp>
 #include <set>
 

@@ -2,8 +2,8 @@
 // The checks of the whole modules on their ports: clock by clock against the model, and the rules of
 // docs/modules/cchip_primtest.md by counting, without the model's clocks.
 #include <cchip/internal/driver/primtest_engine.hpp>
-#include <cchip/internal/exact/oracle.hpp>
 #include <cchip/internal/grid/canonical.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
 #include <cchip/sim/scoreboard.hpp>
 #include <cchip/stimulus/judge.hpp>
 #include <cchip/stimulus/pair_source.hpp>

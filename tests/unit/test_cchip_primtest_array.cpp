@@ -7,7 +7,7 @@
 
 #include <algorithm>
 #include <cchip/internal/driver/primtest_engine.hpp>
-#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
 #include <cchip/internal/model/primtest.hpp>
 #include <cchip/machines/probes.hpp>
 #include <cchip/sim/scoreboard.hpp>

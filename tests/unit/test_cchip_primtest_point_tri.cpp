@@ -8,8 +8,8 @@
 #include <models/cchip_primtest_point_tri.hpp>
 #include <set>
 
-#include "../ref/point_pair.hpp"
 #include "bench.hpp"
+#include "point_pair.hpp"
 
 using namespace cchip;
 using namespace cchip::test;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random pairs of all shapes through the default configurations, and relations between the answers of related pairs.
-#include <cchip/internal/exact/oracle.hpp>
 #include <cchip/internal/grid/canonical.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
 #include <cchip/internal/model/programme.hpp>
 #include <cchip/internal/reference/eigen_sat.hpp>
 #include <cchip/machines/rtl_engine.hpp>

@@ -5,9 +5,9 @@
 #include <models/cchip_refit.hpp>
 #include <optional>
 
-#include "../ref/refit_frames.hpp"
 #include "bench.hpp"
 #include "bv_tools.hpp"
+#include "refit_frames.hpp"
 
 using namespace cchip;
 using namespace cchip::test;

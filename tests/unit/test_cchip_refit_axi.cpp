@@ -4,8 +4,8 @@
 #include <map>
 #include <models/cchip_refit_axi.hpp>
 
-#include "../ref/refit_frames.hpp"
 #include "bench.hpp"
+#include "refit_frames.hpp"
 #include "refit_shapes.hpp"
 
 using namespace cchip;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cchip/models/reconfig.hpp>
+#include <cchip/blocks/reconfig.hpp>
 #include <models/cchip_roc_generator.hpp>
 
 #include "bench.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cchip/models/transform.hpp>
+#include <cchip/blocks/transform.hpp>
 #include <models/cchip_round_shift.hpp>
 
 #include "bench.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cchip/models/traversal.hpp>
+#include <cchip/blocks/traversal.hpp>
 #include <map>
 #include <models/cchip_traversal.hpp>
 #include <set>

@@ -4,8 +4,8 @@
 #ifndef CCHIP_TESTS_UNIT_TRANSFORM_TOOLS_HPP
 #define CCHIP_TESTS_UNIT_TRANSFORM_TOOLS_HPP
 
-#include <cchip/internal/bvh/image_line.hpp>
-#include <cchip/models/transform.hpp>
+#include <cchip/blocks/transform.hpp>
+#include <cchip/internal/image/image_line.hpp>
 
 #include "bv_tools.hpp"
 

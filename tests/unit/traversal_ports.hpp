@@ -4,7 +4,7 @@
 #ifndef CCHIP_TESTS_UNIT_TRAVERSAL_PORTS_HPP
 #define CCHIP_TESTS_UNIT_TRAVERSAL_PORTS_HPP
 
-#include <cchip/models/traversal_events.hpp>
+#include <cchip/blocks/traversal_events.hpp>
 #include <cchip/sim/bits.hpp>
 #include <type_traits>
 

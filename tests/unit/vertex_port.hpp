@@ -5,15 +5,15 @@
 #ifndef CCHIP_TESTS_UNIT_VERTEX_PORT_HPP
 #define CCHIP_TESTS_UNIT_VERTEX_PORT_HPP
 
-#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
 #include <cchip/internal/model/programme.hpp>
 #include <cchip/sim/scoreboard.hpp>
 #include <cchip/stimulus/pair_source.hpp>
 #include <deque>
 #include <map>
 
-#include "../ref/point_pair.hpp"
 #include "bench.hpp"
+#include "point_pair.hpp"
 
 namespace cchip::test {
 

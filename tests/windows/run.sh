@@ -60,7 +60,7 @@ cmake -S "$root/tests/windows" -B "$folder/build" -D CMAKE_TOOLCHAIN_FILE="$tool
   -D CCHIP_NANOBIND_INCLUDE_DIR="$NANOBIND/include" -D CCHIP_PYTHON_INCLUDE_DIR="$folder/python"
 cmake --build "$folder/build" --parallel "${JOBS:-1}"
 # The stack of Windows is aligned to 16 bytes: no vector of 32 or 64 may be moved to memory as if it were aligned to as many.
-for object in "$folder"/build/collisionchip/cpp_ref/CMakeFiles/cchip_device.dir/src/cpu/*.obj; do
+for object in "$folder"/build/collisionchip/lib/CMakeFiles/cchip_device.dir/src/search/*.obj; do
   if x86_64-w64-mingw32-objdump -d --no-show-raw-insn "$object" | grep -E 'vmov(ap[sd]|dqa)' | grep -E '%[yz]mm' | grep '('; then
     echo "run.sh: $object moves vectors to memory that may not be aligned" >&2
     exit 1

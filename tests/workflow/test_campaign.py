@@ -214,7 +214,7 @@ class Sweep(Case):
 @unittest.skipUnless((ROOT / "build/dask/installed").exists(), "no build/dask: make test-dask")
 class Dask(unittest.TestCase):
     def test_workers_killed(self):
-        made = subprocess.run([ROOT / "build/dask/bin/python", "-B", ROOT / "python/tests/over_dask.py", "50000"], stdout=subprocess.PIPE,
+        made = subprocess.run([ROOT / "build/dask/bin/python", "-B", ROOT / "lib/python/tests/over_dask.py", "50000"], stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, text=True, timeout=500)
         self.assertEqual(made.returncode, 0, made.stdout)
         self.assertRegex(made.stdout.splitlines()[-1], r"^queries=[0-9]+ differing=0 lost=0$")

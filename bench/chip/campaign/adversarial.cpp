@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cchip/cpu/cpu_device.hpp>
+#include <cchip/cpu_device.hpp>
 #include <cchip/machines/simulated_chip.hpp>
-#include <cchip/mesh/shapes.hpp>
+#include <cchip/shapes.hpp>
 #include <cmath>
 #include <stdexcept>
 

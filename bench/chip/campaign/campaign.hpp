@@ -4,10 +4,10 @@
 #ifndef CCHIP_BENCH_CHIP_CAMPAIGN_HPP
 #define CCHIP_BENCH_CHIP_CAMPAIGN_HPP
 
-#include <cchip/collide/collide.hpp>
+#include <cchip/collide.hpp>
 #include <cchip/driver/chip_driver.hpp>
+#include <cchip/program/seed.hpp>
 #include <cchip/sim/axi_lines.hpp>
-#include <cchip/sim/seed.hpp>
 #include <cstdint>
 #include <random>
 #include <string>

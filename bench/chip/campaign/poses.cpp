@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cchip/cpu/cpu_device.hpp>
+#include <cchip/cpu_device.hpp>
 #include <cchip/machines/simulated_chip.hpp>
-#include <cchip/mesh/shapes.hpp>
+#include <cchip/shapes.hpp>
 
 #include "campaign.hpp"
 #include "mesh_pairs.hpp"

@@ -5,11 +5,11 @@
 #define CCHIP_BENCH_CHIP_SWAP_CHIP_HPP
 
 #include <array>
-#include <cchip/cpu/cpu_device.hpp>
+#include <cchip/cpu_device.hpp>
 #include <cchip/driver/chip_host.hpp>
 #include <cchip/driver/machine.hpp>
 #include <cchip/internal/wire/chip_registers.hpp>
-#include <cchip/mesh/shapes.hpp>
+#include <cchip/shapes.hpp>
 #include <cchip/sim/axi_memory.hpp>
 #include <functional>
 #include <memory>

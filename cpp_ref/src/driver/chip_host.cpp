@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <cchip/certificate/certify.hpp>
-#include <cchip/cpu/cpu_device.hpp>
+#include <cchip/certify.hpp>
+#include <cchip/cpu_device.hpp>
 #include <cchip/driver/chip_host.hpp>
-#include <cchip/internal/bvh/image.hpp>
-#include <cchip/internal/bvh/place.hpp>
-#include <cchip/internal/bvh/support_tree.hpp>
-#include <cchip/internal/collide/face_pairs.hpp>
+#include <cchip/internal/image/image.hpp>
+#include <cchip/internal/image/place.hpp>
+#include <cchip/internal/judge/face_pairs.hpp>
+#include <cchip/internal/tree/support_tree.hpp>
 #include <iterator>
 #include <list>
 #include <map>

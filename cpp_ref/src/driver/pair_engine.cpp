@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cchip/internal/driver/pair_engine.hpp>
-#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
 #include <stdexcept>
 #include <utility>
 

@@ -7,7 +7,7 @@
 #include <array>
 #include <cchip/levels/generator.hpp>
 #include <cchip/levels/level.hpp>
-#include <cchip/sim/seed.hpp>
+#include <cchip/program/seed.hpp>
 #include <ctime>
 #include <iostream>
 #include <systemc>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // cchip_table1: Table 1 of the paper from a timed simulation.
 #include <CLI/CLI.hpp>
-#include <cchip/sim/output_file.hpp>
-#include <cchip/stimulus/command_line.hpp>
+#include <cchip/program/command_line.hpp>
+#include <cchip/program/output_file.hpp>
 #include <iostream>
 #include <optional>
 #include <systemc>

@@ -4,7 +4,7 @@
 #ifndef CCHIP_DRIVER_CHIP_HOST_HPP
 #define CCHIP_DRIVER_CHIP_HOST_HPP
 
-#include <cchip/collide/collide.hpp>
+#include <cchip/collide.hpp>
 #include <cchip/driver/query_port.hpp>
 #include <cstddef>
 #include <cstdint>

@@ -5,7 +5,7 @@
 #ifndef CCHIP_DRIVER_UIO_DEVICE_HPP
 #define CCHIP_DRIVER_UIO_DEVICE_HPP
 
-#include <cchip/collide/collide.hpp>
+#include <cchip/collide.hpp>
 #include <cchip/driver/chip_driver.hpp>
 #include <cchip/driver/machine.hpp>
 #include <chrono>

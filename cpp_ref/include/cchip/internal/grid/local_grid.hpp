@@ -4,8 +4,8 @@
 #ifndef CCHIP_INTERNAL_GRID_LOCAL_GRID_HPP
 #define CCHIP_INTERNAL_GRID_LOCAL_GRID_HPP
 
-#include <cchip/geometry/primitive.hpp>
 #include <cchip/internal/wire/pair.hpp>
+#include <cchip/primitive.hpp>
 #include <cstdint>
 #include <stdexcept>
 

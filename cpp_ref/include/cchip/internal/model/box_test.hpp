@@ -9,7 +9,7 @@
 #define CCHIP_INTERNAL_MODEL_BOX_TEST_HPP
 
 #include <array>
-#include <cchip/internal/bvh/image_line.hpp>
+#include <cchip/internal/image/image_line.hpp>
 #include <cchip/internal/model/pose_setup.hpp>
 #include <cstdint>
 

@@ -4,7 +4,7 @@
 #ifndef CCHIP_INTERNAL_MODEL_BROAD_PHASE_HPP
 #define CCHIP_INTERNAL_MODEL_BROAD_PHASE_HPP
 
-#include <cchip/internal/bvh/image.hpp>
+#include <cchip/internal/image/image.hpp>
 #include <cchip/internal/wire/pair.hpp>
 #include <cchip/internal/wire/query.hpp>
 #include <cstdint>

@@ -8,7 +8,7 @@
 #define CCHIP_INTERNAL_MODEL_LEAF_PAIR_HPP
 
 #include <array>
-#include <cchip/internal/bvh/image_line.hpp>
+#include <cchip/internal/image/image_line.hpp>
 #include <cchip/internal/wire/pair.hpp>
 #include <cchip/internal/wire/query.hpp>
 #include <cstdint>

@@ -5,7 +5,7 @@
 #define CCHIP_INTERNAL_MODEL_POSE_SETUP_HPP
 
 #include <array>
-#include <cchip/internal/bvh/dop26.hpp>
+#include <cchip/internal/tree/dop26.hpp>
 #include <cchip/internal/wire/query.hpp>
 #include <cstdint>
 

@@ -4,8 +4,8 @@
 #ifndef CCHIP_INTERNAL_REFERENCE_EIGEN_SAT_HPP
 #define CCHIP_INTERNAL_REFERENCE_EIGEN_SAT_HPP
 
-#include <cchip/geometry/primitive.hpp>
 #include <cchip/internal/wire/pair.hpp>
+#include <cchip/primitive.hpp>
 
 namespace cchip {
 

@@ -6,9 +6,9 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <cchip/geometry/primitive.hpp>
 #include <cchip/internal/wire/axis.hpp>
 #include <cchip/internal/wire/definitions.hpp>
+#include <cchip/primitive.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <ostream>

@@ -7,11 +7,11 @@
 #include <verilated.h>
 #include <verilated_fst_c.h>
 
+#include <cchip/program/output_file.hpp>
+#include <cchip/program/seed.hpp>
 #include <cchip/sim/agent.hpp>
 #include <cchip/sim/coverage.hpp>
 #include <cchip/sim/errors.hpp>
-#include <cchip/sim/output_file.hpp>
-#include <cchip/sim/seed.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <iostream>

@@ -4,7 +4,7 @@
 #ifndef CCHIP_MACHINES_SIMULATED_CHIP_HPP
 #define CCHIP_MACHINES_SIMULATED_CHIP_HPP
 
-#include <cchip/collide/collide.hpp>
+#include <cchip/collide.hpp>
 #include <cchip/driver/machine.hpp>
 #include <cchip/sim/axi_lines.hpp>
 #include <cstdint>

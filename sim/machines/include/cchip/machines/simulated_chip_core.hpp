@@ -4,7 +4,7 @@
 #ifndef CCHIP_MACHINES_SIMULATED_CHIP_CORE_HPP
 #define CCHIP_MACHINES_SIMULATED_CHIP_CORE_HPP
 
-#include <cchip/internal/bvh/image.hpp>
+#include <cchip/internal/image/image.hpp>
 #include <cchip/machines/chip_answer.hpp>
 #include <cchip/sim/axi_lines.hpp>
 #include <cchip/sim/bits.hpp>

@@ -5,7 +5,7 @@
 #define CCHIP_MACHINES_SIMULATED_REFIT_HPP
 
 #include <cchip/driver/machine.hpp>
-#include <cchip/internal/bvh/image_line.hpp>
+#include <cchip/internal/image/image_line.hpp>
 #include <cchip/internal/wire/definitions.hpp>
 #include <cchip/sim/axi_lines.hpp>
 #include <cchip/sim/simulation.hpp>

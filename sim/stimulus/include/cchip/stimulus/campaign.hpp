@@ -9,11 +9,11 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cchip/geometry/primitive.hpp>
 #include <cchip/internal/model/programme.hpp>
 #include <cchip/internal/wire/pair.hpp>
-#include <cchip/sim/seed.hpp>
-#include <cchip/stimulus/progress.hpp>
+#include <cchip/primitive.hpp>
+#include <cchip/program/progress.hpp>
+#include <cchip/program/seed.hpp>
 #include <chrono>
 #include <cstdint>
 #include <exception>

@@ -4,8 +4,8 @@
 #ifndef CCHIP_STIMULUS_JUDGE_HPP
 #define CCHIP_STIMULUS_JUDGE_HPP
 
-#include <cchip/internal/exact/oracle.hpp>
 #include <cchip/internal/grid/coplanar.hpp>
+#include <cchip/internal/grid/grid_oracle.hpp>
 #include <cchip/stimulus/campaign.hpp>
 #include <cchip/stimulus/quads.hpp>
 

@@ -5,7 +5,7 @@
 #define CCHIP_STIMULUS_PAIR_COLUMNS_HPP
 
 #include <array>
-#include <cchip/stimulus/csv_reader.hpp>
+#include <cchip/program/csv_reader.hpp>
 #include <cchip/stimulus/pair_job.hpp>
 #include <cstddef>
 #include <optional>
@@ -21,10 +21,6 @@ struct ColumnOptions {
   /// True: the columns with the coordinates and kinds go to the output, too.
   bool pass_all = false;
 };
-
-/// Nearest double of a decimal number; spaces around it and one leading plus are allowed.
-/// \throws std::invalid_argument what is wrong and what to do, without a location
-double parse_coordinate(std::string_view text);
 
 class PairColumns {
  public:

@@ -4,7 +4,7 @@
 #ifndef CCHIP_STIMULUS_PAIR_JOB_HPP
 #define CCHIP_STIMULUS_PAIR_JOB_HPP
 
-#include <cchip/geometry/primitive.hpp>
+#include <cchip/primitive.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>

@@ -5,9 +5,9 @@
 #define CCHIP_STIMULUS_PAIR_VECTOR_HPP
 
 #include <bitset>
-#include <cchip/geometry/primitive.hpp>
 #include <cchip/internal/wire/definitions.hpp>
 #include <cchip/internal/wire/pair.hpp>
+#include <cchip/primitive.hpp>
 #include <cstdint>
 #include <fstream>
 #include <stdexcept>

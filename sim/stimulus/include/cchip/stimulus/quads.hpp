@@ -5,8 +5,8 @@
 #define CCHIP_STIMULUS_QUADS_HPP
 
 #include <Eigen/Geometry>
-#include <cchip/geometry/primitive.hpp>
 #include <cchip/internal/wire/pair.hpp>
+#include <cchip/primitive.hpp>
 #include <cstdint>
 
 namespace cchip::stimulus {

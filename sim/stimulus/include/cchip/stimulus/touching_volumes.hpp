@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <cchip/internal/bvh/image_line.hpp>
+#include <cchip/internal/image/image_line.hpp>
 #include <cchip/internal/wire/query.hpp>
 #include <cchip/stimulus/boundary.hpp>
 #include <cmath>

@@ -5,7 +5,7 @@
 #define CCHIP_LEVELS_API_HPP
 
 #include <cchip/levels/stimulus.hpp>
-#include <cchip/stimulus/progress.hpp>
+#include <cchip/program/progress.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <string>

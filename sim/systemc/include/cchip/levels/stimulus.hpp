@@ -6,9 +6,9 @@
 #define CCHIP_LEVELS_STIMULUS_HPP
 
 #include <array>
-#include <cchip/geometry/primitive.hpp>
 #include <cchip/internal/wire/definitions.hpp>
 #include <cchip/internal/wire/pair.hpp>
+#include <cchip/primitive.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <optional>

@@ -1,0 +1,386 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cchip/certify.hpp>
+#include <cchip/check.hpp>
+#include <cchip/internal/exact/posed_pairs.hpp>
+#include <cchip/internal/judge/face_pairs.hpp>
+#include <cchip/internal/judge/near_parts.hpp>
+#include <cchip/internal/tree/dop26.hpp>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "pair_proof.hpp"
+
+namespace cchip {
+namespace {
+
+using certificate_check::Int;
+using certificate_check::Point;
+using CellKind = CertificateCell::Kind;
+
+/// Directions that sets of faces are tried on: those of the 26-DOPs in the frame of A and in that of B.
+constexpr std::size_t direction_count = 2 * bvh::directions.size();
+using Directions = std::array<std::array<int, 3>, direction_count>;
+
+Directions directions_of(const std::array<const Pose*, 2>& poses) {
+  Directions result = {};
+  std::size_t n = 0;
+  for (const Pose* pose : poses) {
+    for (const std::array<int, 3>& d : bvh::directions) {
+      Vec3d turned = pose->linear() * Vec3d(d[0], d[1], d[2]);
+      turned *= 1024 / turned.cwiseAbs().maxCoeff();
+      if (!turned.allFinite()) turned = 1024 * Vec3d(d[0], d[1], d[2]);  // a pose that is flat
+      int divisor = 0;
+      for (std::size_t i = 0; i < 3; ++i) {
+        result[n][i] = static_cast<int>(std::lround(turned[static_cast<Eigen::Index>(i)]));
+        divisor = std::gcd(divisor, result[n][i]);
+      }
+      for (int& x : result[n]) x /= divisor;
+      ++n;
+    }
+  }
+  return result;
+}
+
+/// The faces of one mesh, halved again and again at the median, as far as a search asks for.
+class Tree {
+ public:
+  struct Node {
+    std::uint32_t begin = 0, end = 0;                     ///< in the order
+    std::uint32_t first = 0, second = 0;                  ///< nodes, after divide()
+    std::array<double, direction_count> least, greatest;  ///< rounded
+    double size = 0;
+    Eigen::Index longest = 0;  ///< axis of the box
+  };
+
+  Tree() = default;
+  /// \param points of the vertices, rounded; kept
+  Tree(const Mesh& mesh, std::vector<Vec3d> points, const Directions& directions)
+      : order(mesh.faces.size()), mesh_(&mesh), points_(std::move(points)), taken_(points_.size()) {
+    std::iota(order.begin(), order.end(), 0U);
+    for (std::size_t d = 0; d < direction_count; ++d) {
+      for (std::size_t i = 0; i < 3; ++i) directions_[i][d] = directions[d][i];
+    }
+    add(0, static_cast<std::uint32_t>(order.size()));
+  }
+  /// Stays where it is.
+  const Node& node(std::uint32_t number) const { return nodes_[number]; }
+  /// Makes the halves of a node of more than one face, if it has none yet.
+  void divide(std::uint32_t number) {
+    if (nodes_[number].first != 0) return;
+    const std::uint32_t begin = nodes_[number].begin, end = nodes_[number].end;
+    const std::uint32_t middle = begin + (end - begin) / 2;
+    const Eigen::Index axis = nodes_[number].longest;
+    const auto key = [&](std::uint32_t face) {
+      double sum = 0;
+      for (std::size_t k = 0; k < corners(face); ++k) sum += points_[vertex(face, k)][axis];
+      return sum / static_cast<double>(corners(face));
+    };
+    const auto at = [&](std::uint32_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t x, std::uint32_t y) {
+      const double kx = key(x), ky = key(y);
+      return kx < ky || (kx == ky && x < y);
+    });
+    const std::uint32_t first = add(begin, middle);
+    const std::uint32_t second = add(middle, end);
+    nodes_[number].first = first;
+    nodes_[number].second = second;
+  }
+
+  std::vector<std::uint32_t> order;
+
+ private:
+  std::size_t corners(std::uint32_t face) const { return static_cast<std::size_t>(mesh_->faces[face].kind); }
+  std::uint32_t vertex(std::uint32_t face, std::size_t k) const { return mesh_->faces[face].vertex[k]; }
+
+  std::uint32_t add(std::uint32_t begin, std::uint32_t end) {
+    Node n;
+    n.begin = begin;
+    n.end = end;
+    n.least.fill(std::numeric_limits<double>::infinity());
+    n.greatest.fill(-std::numeric_limits<double>::infinity());
+    Vec3d low = Vec3d::Constant(std::numeric_limits<double>::infinity());
+    Vec3d high = -low;
+    const auto number = static_cast<std::uint32_t>(nodes_.size());
+    for (std::uint32_t i = begin; i < end; ++i) {
+      for (std::size_t k = 0; k < corners(order[i]); ++k) {
+        const std::uint32_t v = vertex(order[i], k);
+        if (taken_[v] == number + 1) continue;
+        taken_[v] = number + 1;
+        const Vec3d& p = points_[v];
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+        for (std::size_t d = 0; d < direction_count; ++d) {
+          const double value = directions_[0][d] * p[0] + directions_[1][d] * p[1] + directions_[2][d] * p[2];
+          n.least[d] = std::min(n.least[d], value);
+          n.greatest[d] = std::max(n.greatest[d], value);
+        }
+      }
+    }
+    n.size = (high - low).maxCoeff(&n.longest);
+    nodes_.push_back(n);
+    return number;
+  }
+
+  const Mesh* mesh_ = nullptr;
+  std::vector<Vec3d> points_;
+  std::array<std::array<double, direction_count>, 3> directions_ = {};
+  std::vector<std::uint32_t> taken_;  ///< of each vertex: the last node that has seen it, from 1
+  std::deque<Node> nodes_;            ///< keeps their places
+};
+
+std::vector<Digits> digits(const std::array<int, 3>& d, int sign) {
+  return {std::to_string(sign * d[0]), std::to_string(sign * d[1]), std::to_string(sign * d[2])};
+}
+
+class Maker {
+ public:
+  Maker(const CollisionQuery& query, const CollisionRequest& request)
+      : query_(query), request_(request), checker_{{&query.a->mesh(), &query.b->mesh()}, {}} {
+    checker_.points = certificate_check::place(checker_.mesh, {query.pose_a, query.pose_b});
+    certificate_.hash_a = hash_mesh(*checker_.mesh[0]);
+    certificate_.hash_b = hash_mesh(*checker_.mesh[1]);
+    certificate_.hash_poses = hash_poses(*query.pose_a, *query.pose_b);
+    if (request.least == Relation::crossing) certificate_.least = Relation::crossing;
+  }
+
+  /// The proof of one contact, if a pair of parts of the two faces proves it; else nothing.
+  std::optional<Certificate> prove_contact(const Contact& contact) {
+    const PosedPairs pairs(*query_.pose_a, *query_.pose_b);
+    std::optional<Certificate> proof;
+    any_near_parts(query_, contact, [&](std::uint32_t face_a, std::uint32_t face_b) {
+      const Primitive a = query_.a->mesh().primitive(face_a);
+      const Primitive b = query_.b->mesh().primitive(face_b);
+      const PosedPairs::Answer met = pairs.decide(a, b, request_.tells_relation());
+      if (request_.tells_relation() ? !met.crosses : !met.hit) return false;
+      const CertificateCell cell = pair(face_a, face_b);
+      if (ends_search(cell)) proof = one_contact(cell);
+      return proof.has_value();
+    });
+    return proof;
+  }
+
+  Certificate search() {
+    const Directions directions = directions_of({query_.pose_a, query_.pose_b});
+    std::array<std::vector<Vec3d>, 2> points = rounded_points();
+    trees_[0] = Tree(*checker_.mesh[0], std::move(points[0]), directions);
+    trees_[1] = Tree(*checker_.mesh[1], std::move(points[1]), directions);
+    directions_ = directions;
+    if (!descend(0, 0)) return one_contact(certificate_.cells.back());
+    sort_undivided();
+    certificate_.order_a = trees_[0].order;
+    certificate_.order_b = trees_[1].order;
+    claim_all();
+    return std::move(certificate_);
+  }
+
+ private:
+  bool ends_search(const CertificateCell& cell) const {
+    return request_.contacts == CollisionRequest::Contacts::first &&
+           cell.kind == (request_.tells_relation() ? CellKind::cross : CellKind::meet);
+  }
+
+  CertificateCell pair(std::uint32_t face_a, std::uint32_t face_b) const {
+    std::array<std::vector<Point>, 2> points;
+    const std::array<std::uint32_t, 2> face = {face_a, face_b};
+    for (const std::size_t side : {0U, 1U}) {
+      for (std::size_t k = 0; k < checker_.corners(side, face[side]); ++k) {
+        points[side].push_back(checker_.corner(side, face[side], k));
+      }
+    }
+    CertificateCell cell = prove_pair(points[0], points[1], request_.tells_relation());
+    cell.face_a = face_a;
+    cell.face_b = face_b;
+    return cell;
+  }
+
+  Certificate one_contact(CertificateCell cell) {
+    Certificate result = certificate_;
+    result.all = false;
+    result.contacts = {contact(cell)};
+    if (cell.kind == CellKind::cross) result.relation = Relation::crossing;
+    result.cells.assign(1, std::move(cell));
+    return result;
+  }
+  Certificate::Contact contact(const CertificateCell& cell) const {
+    Certificate::Contact result = {checker_.mesh[0]->number_in_file(cell.face_a),
+                                   checker_.mesh[1]->number_in_file(cell.face_b), std::nullopt};
+    if (cell.kind == CellKind::cross) result.relation = Relation::crossing;
+    if (cell.kind == CellKind::touch) result.relation = Relation::touching;
+    return result;
+  }
+  /// Sets that no cell divides are put in ascending order, which makes the file short.
+  void sort_undivided() {
+    for (const std::size_t side : {0U, 1U}) {
+      std::vector<std::uint32_t>& order = trees_[side].order;
+      std::vector<bool> begins(order.size());
+      for (const CertificateCell& cell : certificate_.cells) {
+        if (cell.kind == (side == 0 ? CellKind::split_a : CellKind::split_b)) begins[cell.at] = true;
+      }
+      auto from = order.begin();
+      for (auto i = from; i != order.end(); ++i) {
+        if (!begins[static_cast<std::size_t>(i - order.begin())]) continue;
+        std::sort(from, i);
+        from = i;
+      }
+      std::sort(from, order.end());
+    }
+  }
+  void claim_all() {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::optional<Relation>> contacts;
+    Relation relation = Relation::apart;
+    for (const CertificateCell& cell : certificate_.cells) {
+      if (cell.kind < CellKind::meet) continue;
+      const Certificate::Contact found = contact(cell);
+      if (found.relation) relation = std::max(relation, *found.relation);
+      if (certificate_.least == Relation::crossing && found.relation != Relation::crossing) continue;
+      std::optional<Relation>& known = contacts[{found.face_a, found.face_b}];
+      known = std::max(known, found.relation);
+    }
+    for (const auto& [faces, known] : contacts) certificate_.contacts.push_back({faces.first, faces.second, known});
+    if (request_.tells_relation()) certificate_.relation = relation;
+  }
+
+  /// Doubles close to the points, about a vertex of B, which candidates are chosen by; every one is checked exactly.
+  std::array<std::vector<Vec3d>, 2> rounded_points() const {
+    const Point& origin = checker_.corner(1, 0, 0);
+    unsigned bits = 0;
+    std::array<std::vector<Point>, 2> relative;
+    for (const std::size_t side : {0U, 1U}) {
+      relative[side] = checker_.points[side];
+      for (Point& p : relative[side]) {
+        for (std::size_t i = 0; i < 3; ++i) {
+          p[i] -= origin[i];
+          if (p[i] != 0) bits = std::max(bits, static_cast<unsigned>(msb(abs(p[i]))));
+        }
+      }
+    }
+    const unsigned shift = bits > 500 ? bits - 500 : 0;  // such coordinates are doubles
+    std::array<std::vector<Vec3d>, 2> result;
+    for (const std::size_t side : {0U, 1U}) {
+      for (Point& p : relative[side]) {
+        for (Int& x : p) {
+          if (shift != 0) x = x < 0 ? Int(-(-x >> shift)) : Int(x >> shift);
+        }
+        result[side].emplace_back(p[0].convert_to<double>(), p[1].convert_to<double>(), p[2].convert_to<double>());
+      }
+    }
+    return result;
+  }
+
+  static std::vector<std::uint32_t> faces(const Tree& tree, const Tree::Node& node) {
+    return {tree.order.begin() + static_cast<std::ptrdiff_t>(node.begin),
+            tree.order.begin() + static_cast<std::ptrdiff_t>(node.end)};
+  }
+
+  /// Separates two sets along one of the fixed directions, if that is easy.
+  bool separate(const Tree::Node& a, const Tree::Node& b) {
+    for (std::size_t d = 0; d < direction_count; ++d) {
+      const double size = std::max(std::max(std::abs(a.least[d]), std::abs(a.greatest[d])),
+                                   std::max(std::abs(b.least[d]), std::abs(b.greatest[d])));
+      for (const int sign : {1, -1}) {
+        const double gap = sign > 0 ? b.least[d] - a.greatest[d] : a.least[d] - b.greatest[d];
+        if (!(gap > 0x1p-45 * size)) continue;  // closer ones are left to pairs of faces
+        CertificateCell cell;
+        cell.direction = digits(directions_[d], sign);
+        if (checker_.overlap(cell.direction, {faces(trees_[0], a), faces(trees_[1], b)}) >= 0) continue;
+        certificate_.cells.push_back(std::move(cell));
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// Appends the cells of two sets. \returns false if the search has ended at a contact, the last cell
+  bool descend(std::uint32_t node_a, std::uint32_t node_b) {
+    const Tree::Node& a = trees_[0].node(node_a);
+    const Tree::Node& b = trees_[1].node(node_b);
+    if (separate(a, b)) return true;
+    const bool single_a = a.end - a.begin == 1;
+    const bool single_b = b.end - b.begin == 1;
+    if (single_a && single_b) {
+      certificate_.cells.push_back(pair(trees_[0].order[a.begin], trees_[1].order[b.begin]));
+      return !ends_search(certificate_.cells.back());
+    }
+    CertificateCell split;
+    const bool of_b = single_a || (!single_b && b.size > a.size);
+    split.kind = of_b ? CellKind::split_b : CellKind::split_a;
+    Tree& tree = trees_[of_b ? 1 : 0];
+    tree.divide(of_b ? node_b : node_a);
+    const Tree::Node& parent = of_b ? b : a;
+    split.at = tree.node(parent.second).begin;
+    certificate_.cells.push_back(split);
+    for (const std::uint32_t child : {parent.first, parent.second}) {
+      if (!(of_b ? descend(node_a, child) : descend(child, node_b))) return false;
+    }
+    return true;
+  }
+
+  CollisionQuery query_;
+  CollisionRequest request_;
+  certificate_check::Checker checker_;
+  Directions directions_ = {};
+  std::array<Tree, 2> trees_;
+  Certificate certificate_;
+};
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw std::runtime_error("certify: the answer is wrong: " + what + "; please report it with both meshes and poses");
+}
+
+std::string name(const Contact& contact) {
+  return "faces " + std::to_string(contact.face_a) + " of A and " + std::to_string(contact.face_b) + " of B";
+}
+
+void check_request(const CollisionQuery& query, const CollisionRequest& request) {
+  CollisionRequest proved = request;
+  proved.certificate = true;
+  check_query(query, proved);
+}
+
+}  // namespace
+
+Certificate certify(const CollisionQuery& query, const CollisionRequest& request) {
+  check_request(query, request);
+  return Maker(query, request).search();
+}
+
+Certificate certify(const CollisionQuery& query, const CollisionRequest& request, const CollisionResult& answer) {
+  check_request(query, request);
+  Maker maker(query, request);
+  const bool first = request.contacts == CollisionRequest::Contacts::first;
+  if (first && answer.hit && !answer.contacts.empty() &&
+      (!request.tells_relation() || answer.relation == Relation::crossing)) {
+    const Contact& contact = answer.contacts.front();
+    if (std::optional<Certificate> certificate = maker.prove_contact(contact)) return *std::move(certificate);
+    refuse(name(contact) + " are no such contact");
+  }
+  Certificate certificate = maker.search();
+  if (answer.hit != !certificate.contacts.empty()) refuse(answer.hit ? "there is no contact" : "there is a contact");
+  if (answer.relation && answer.relation != certificate.relation) refuse("the relation is another one");
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::optional<Relation>> proved;
+  for (const Certificate::Contact& c : certificate.contacts) proved.emplace(std::pair(c.face_a, c.face_b), c.relation);
+  for (const Contact& contact : answer.contacts) {
+    const auto found = proved.find({contact.face_a, contact.face_b});
+    if (found == proved.end() || (contact.relation && contact.relation != found->second)) {
+      refuse(name(contact) + " are no such contact");
+    }
+  }
+  if (!first && answer.contacts.size() != std::min(request.max_contacts, certificate.contacts.size())) {
+    refuse("it has another number of contacts than there are");
+  }
+  return certificate;
+}
+
+void add_certificate(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& answer) {
+  answer.certificate = std::make_shared<const Certificate>(certify(query, request, answer));
+}
+
+}  // namespace cchip

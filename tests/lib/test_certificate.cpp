@@ -1,0 +1,1002 @@
+// SPDX-License-Identifier: Apache-2.0
+// Answers with their proof: answers of the CPU device are certified and accepted; what was changed is accepted only
+// where it is true as well, by a judge that shares nothing with the checker.
+#include <boost/multiprecision/cpp_int.hpp>
+#include <catch2/catch.hpp>
+#include <cchip/certificate_file.hpp>
+#include <cchip/certify.hpp>
+#include <cchip/check.hpp>
+#include <cchip/cpu_device.hpp>
+#include <cchip/device.hpp>
+#include <cchip/internal/exact/oracle.hpp>
+#include <cchip/program/seed.hpp>
+#include <cchip/scene.hpp>
+#include <fstream>
+#include <iostream>
+#include <set>
+#include <sstream>
+
+#include "bvh_meshes.hpp"
+#include "random_poses.hpp"
+
+using namespace cchip;
+using namespace cchip_test;
+using cchip::testing::make_box;
+using cchip::testing::soup;
+using Contacts = CollisionRequest::Contacts;
+using CellKind = CertificateCell::Kind;
+using boost::multiprecision::cpp_int;
+using boost::multiprecision::cpp_rational;
+
+namespace {
+
+struct Placed {
+  Mesh mesh;
+  Pose pose = Pose::Identity();
+};
+
+CollisionRequest request(Contacts contacts, bool relation, Relation least = Relation::touching) {
+  CollisionRequest result;
+  result.contacts = contacts;
+  result.relation = relation;
+  result.least = least;
+  return result;
+}
+
+const std::vector<CollisionRequest> requests = {request(Contacts::first, false),
+                                                request(Contacts::all, false),
+                                                request(Contacts::first, true),
+                                                request(Contacts::all, true),
+                                                request(Contacts::first, false, Relation::crossing),
+                                                request(Contacts::all, false, Relation::crossing)};
+
+/// Does the certificate hold? Looks at every pair of faces by itself, in rationals, and at the claim by the exact
+/// oracle.
+class Judge {
+ public:
+  Judge(const Placed& a, const Placed& b) : side_{a, b} {
+    for (const std::size_t s : {0U, 1U}) {
+      for (const Vec3d& v : side_[s].mesh.vertices) {
+        std::array<cpp_rational, 3> p;
+        for (int row = 0; row < 3; ++row) {
+          p[std::size_t(row)] = cpp_rational(side_[s].pose.translation()[row]);
+          for (int i = 0; i < 3; ++i) {
+            p[std::size_t(row)] += cpp_rational(side_[s].pose.linear()(row, i)) * cpp_rational(v[i]);
+          }
+        }
+        points_[s].push_back(p);
+      }
+    }
+  }
+
+  bool holds(const Certificate& c) {
+    if (c.version != 1 || c.hash_a != hash_mesh(side_[0].mesh) || c.hash_b != hash_mesh(side_[1].mesh) ||
+        c.hash_poses != hash_poses(side_[0].pose, side_[1].pose)) {
+      return false;
+    }
+    return proof_holds(c) && claim_holds(c);
+  }
+
+  /// The claim alone.
+  bool claim_holds(const Certificate& c) {
+    const auto& [truth, strongest] = relations();
+    if (c.relation && *c.relation != strongest) return false;
+    std::set<std::pair<std::uint32_t, std::uint32_t>> claimed;
+    for (const Certificate::Contact& contact : c.contacts) {
+      const auto found = truth.find({contact.face_a, contact.face_b});
+      if (found == truth.end() || found->second < c.least) return false;
+      if (contact.relation && *contact.relation != found->second) return false;
+      claimed.insert(found->first);
+    }
+    if (!c.all) return claimed.size() == 1;
+    for (const auto& [faces, relation] : truth) {
+      if (relation >= c.least && claimed.count(faces) == 0) return false;
+    }
+    return true;
+  }
+
+ private:
+  using Faces = std::vector<std::uint32_t>;
+  /// Of all faces of the files that are not apart, and the strongest of all.
+  struct Truth {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, Relation> relations;
+    Relation strongest = Relation::apart;
+  };
+
+  const Truth& relations() {
+    if (truth_) return *truth_;
+    truth_ = Truth();  // clang 14 knows no emplace() without arguments inside the class
+    for (std::uint32_t f = 0; f < side_[0].mesh.faces.size(); ++f) {
+      for (std::uint32_t g = 0; g < side_[1].mesh.faces.size(); ++g) {
+        const Relation relation =
+            exact_relation(side_[0].mesh.primitive(f), side_[0].pose, side_[1].mesh.primitive(g), side_[1].pose);
+        if (relation == Relation::apart) continue;
+        Relation& known = truth_->relations[{side_[0].mesh.number_in_file(f), side_[1].mesh.number_in_file(g)}];
+        known = std::max(known, relation);
+        truth_->strongest = std::max(truth_->strongest, relation);
+      }
+    }
+    return *truth_;
+  }
+
+  bool proof_holds(const Certificate& c) {
+    next_ = 0;
+    if (!c.all) {
+      return c.cells.size() == 1 && c.cells[0].kind >= CellKind::meet && point_holds(c.cells[0]);
+    }
+    for (const std::size_t s : {0U, 1U}) {  // a permutation
+      Faces order = s == 0 ? c.order_a : c.order_b;
+      std::sort(order.begin(), order.end());
+      for (std::size_t i = 0; i < order.size(); ++i) {
+        if (order[i] != i) return false;
+      }
+      if (order.size() != side_[s].mesh.faces.size()) return false;
+    }
+    return cells_hold(c, 0, c.order_a.size(), 0, c.order_b.size()) && next_ == c.cells.size();
+  }
+  bool cells_hold(const Certificate& c, std::size_t a0, std::size_t a1, std::size_t b0, std::size_t b1) {
+    if (next_ >= c.cells.size()) return false;
+    const CertificateCell& cell = c.cells[next_++];
+    switch (cell.kind) {
+      case CellKind::split_a:
+        return a0 < cell.at && cell.at < a1 && cells_hold(c, a0, cell.at, b0, b1) && cells_hold(c, cell.at, a1, b0, b1);
+      case CellKind::split_b:
+        return b0 < cell.at && cell.at < b1 && cells_hold(c, a0, a1, b0, cell.at) && cells_hold(c, a0, a1, cell.at, b1);
+      case CellKind::separated:
+        for (std::size_t i = a0; i < a1; ++i) {
+          for (std::size_t k = b0; k < b1; ++k) {
+            if (!below(cell, c.order_a[i], c.order_b[k], true)) return false;
+          }
+        }
+        return true;
+      case CellKind::meet:
+      case CellKind::touch:
+      case CellKind::cross:
+        return a1 - a0 == 1 && b1 - b0 == 1 && cell.face_a == c.order_a[a0] && cell.face_b == c.order_b[b0] &&
+               point_holds(cell);
+    }
+    return false;
+  }
+  const std::array<cpp_rational, 3>& corner(std::size_t s, std::uint32_t face, std::size_t k) const {
+    return points_[s][side_[s].mesh.faces[face].vertex[k]];
+  }
+  std::size_t corners(std::size_t s, std::uint32_t face) const {
+    return static_cast<std::size_t>(side_[s].mesh.faces[face].kind);
+  }
+  bool below(const CertificateCell& cell, std::uint32_t f, std::uint32_t g, bool strictly) const {
+    if (cell.direction.size() != 3) return false;
+    std::array<cpp_rational, 3> d;
+    for (std::size_t i = 0; i < 3; ++i) d[i] = cpp_rational(cell.direction[i]);
+    if (d[0] == 0 && d[1] == 0 && d[2] == 0) return false;
+    for (std::size_t i = 0; i < corners(0, f); ++i) {
+      for (std::size_t k = 0; k < corners(1, g); ++k) {
+        cpp_rational gap = 0;
+        for (std::size_t x = 0; x < 3; ++x) gap += d[x] * (corner(1, g, k)[x] - corner(0, f, i)[x]);
+        if (gap < 0 || (strictly && gap == 0)) return false;
+      }
+    }
+    return true;
+  }
+  bool point_holds(const CertificateCell& cell) const {
+    std::array<std::array<cpp_rational, 3>, 2> point;
+    for (const std::size_t s : {0U, 1U}) {
+      const std::vector<Digits>& weights = s == 0 ? cell.weights_a : cell.weights_b;
+      const std::uint32_t face = s == 0 ? cell.face_a : cell.face_b;
+      if (face >= side_[s].mesh.faces.size() || weights.size() != corners(s, face)) return false;
+      cpp_rational sum = 0;
+      for (const Digits& text : weights) {
+        const cpp_rational weight(text);
+        if (weight < 0 || (weight == 0 && cell.kind == CellKind::cross)) return false;
+        sum += weight;
+      }
+      if (sum == 0) return false;
+      for (std::size_t k = 0; k < weights.size(); ++k) {
+        for (std::size_t x = 0; x < 3; ++x) point[s][x] += cpp_rational(weights[k]) / sum * corner(s, face, k)[x];
+      }
+    }
+    if (point[0] != point[1]) return false;
+    if (cell.kind == CellKind::touch) return below(cell, cell.face_a, cell.face_b, false);
+    if (cell.kind == CellKind::meet) return true;
+    std::array<std::array<cpp_rational, 3>, 3> m;  // elimination
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t s = cell.span[i].of_b ? 1 : 0;
+      const std::uint32_t face = s == 0 ? cell.face_a : cell.face_b;
+      if (cell.span[i].vertex >= corners(s, face)) return false;
+      for (std::size_t x = 0; x < 3; ++x) m[i][x] = corner(s, face, cell.span[i].vertex)[x] - corner(s, face, 0)[x];
+    }
+    for (std::size_t x = 0; x < 3; ++x) {
+      std::size_t pivot = x;
+      while (pivot < 3 && m[pivot][x] == 0) ++pivot;
+      if (pivot == 3) return false;
+      std::swap(m[pivot], m[x]);
+      for (std::size_t i = x + 1; i < 3; ++i) {
+        const cpp_rational by = m[i][x] / m[x][x];
+        for (std::size_t k = x; k < 3; ++k) m[i][k] -= by * m[x][k];
+      }
+    }
+    return true;
+  }
+
+  std::array<Placed, 2> side_;
+  std::array<std::vector<std::array<cpp_rational, 3>>, 2> points_;
+  std::optional<Truth> truth_;
+  std::size_t next_ = 0;
+};
+
+/// Small meshes: apart, flush, piercing, degenerate.
+std::array<Placed, 2> random_pair(std::mt19937_64& random) {
+  std::array<Placed, 2> result;
+  const std::uint64_t kind = random() % 4;
+  for (Placed& p : result) {
+    if (kind == 0) {  // degenerate and coplanar faces, warped quads
+      p.mesh = soup(1 + random() % 6, true, random);
+    } else if (kind == 1) {
+      p.mesh = soup(1 + random() % 6, false, random);
+    } else {  // boxes on a coarse grid: flush faces
+      const Vec3d low = testing::random_vector(random, 2).array().round().matrix();
+      p.mesh = make_box(low, low + Vec3d(1, 1, double(1 + random() % 2)));
+      if (random() % 2 == 0) p.mesh = subdivided(p.mesh);
+    }
+    if (random() % 4 == 0) {  // faces that were cut: the file has fewer
+      for (std::uint32_t i = 0; i < p.mesh.faces.size(); ++i) p.mesh.file_face.push_back(i / 2);
+    }
+  }
+  if (kind != 2 && random() % 2 == 0) {
+    const PoseClass c = pose_classes[random() % std::size(pose_classes)];
+    result[0].pose = random_pose(c, 0.5, random);
+    result[1].pose = random() % 3 == 0 ? result[0].pose : random_pose(c, 0.5, random);
+  }
+  return result;
+}
+
+CertificateVerdict check(const std::array<Placed, 2>& pair, const Certificate& certificate) {
+  return check_certificate(pair[0].mesh, pair[0].pose, pair[1].mesh, pair[1].pose, certificate);
+}
+
+std::mt19937_64 generator(std::uint64_t test) { return std::mt19937_64(1000 * sim::seed_from_environment() + test); }
+
+std::string describe(const Certificate& c) {
+  std::ostringstream out;
+  const auto tell = [&](const std::optional<Relation>& r) { out << (r ? std::to_string(int(*r)) : "-") << ' '; };
+  out << (c.all ? "all" : "one") << " least " << int(c.least) << " relation ";
+  tell(c.relation);
+  for (const auto& contact : c.contacts) {
+    out << "contact " << contact.face_a << ' ' << contact.face_b << ' ';
+    tell(contact.relation);
+  }
+  for (const auto& cell : c.cells) {
+    out << "\n" << int(cell.kind) << " at " << cell.at << " faces " << cell.face_a << ' ' << cell.face_b;
+    for (const auto* numbers : {&cell.direction, &cell.weights_a, &cell.weights_b}) {
+      out << ", ";
+      for (const Digits& text : *numbers) out << text << ' ';
+    }
+  }
+  return out.str();
+}
+
+/// Changes one field.
+void mutate(Certificate& c, std::mt19937_64& random) {
+  const auto other = [&](std::vector<Digits>& numbers) {
+    if (numbers.empty()) return;
+    Digits& text = numbers[random() % numbers.size()];
+    const cpp_int number(text);
+    switch (random() % 6) {
+      case 0:
+        text = cpp_int(number + 1).str();
+        break;
+      case 1:
+        text = cpp_int(number - 1).str();
+        break;
+      case 2:
+        text = cpp_int(-number).str();
+        break;
+      case 3:
+        text = "0";
+        break;
+      case 4:
+        text = cpp_int(number * 2).str();
+        break;
+      default:
+        numbers.pop_back();
+    }
+  };
+  const auto relation = [&]() -> std::optional<Relation> {
+    const std::uint64_t n = random() % 4;
+    if (n == 3) return std::nullopt;
+    return static_cast<Relation>(n);
+  };
+  const auto number = [&](std::uint32_t n) { return random() % 2 == 0 ? n + 1 : n - (n > 0 ? 1 : 0); };
+  CertificateCell& cell = c.cells[random() % c.cells.size()];
+  switch (random() % 22) {
+    case 18: {
+      std::uint64_t& hash = *std::array<std::uint64_t*, 3>{&c.hash_a, &c.hash_b, &c.hash_poses}[random() % 3];
+      hash ^= std::uint64_t{1} << random() % 64;
+      break;
+    }
+    case 19:
+      c.version = static_cast<int>(random() % 3);
+      break;
+    case 20:
+      if (!c.contacts.empty()) {
+        Certificate::Contact& contact = c.contacts[random() % c.contacts.size()];
+        std::uint32_t& face = random() % 2 == 0 ? contact.face_a : contact.face_b;
+        face = number(face);
+      }
+      break;
+    case 21: {
+      std::vector<std::uint32_t>& order = random() % 2 == 0 ? c.order_a : c.order_b;
+      if (!order.empty()) {
+        std::uint32_t& face = order[random() % order.size()];
+        face = number(face);
+      }
+      break;
+    }
+    case 0:
+      cell.kind = static_cast<CellKind>(random() % 6);
+      break;
+    case 1:
+      cell.at = number(cell.at);
+      break;
+    case 2:
+      cell.face_a = number(cell.face_a);
+      break;
+    case 3:
+      cell.face_b = number(cell.face_b);
+      break;
+    case 4:
+    case 5:
+      other(cell.weights_a);
+      break;
+    case 6:
+    case 7:
+      other(cell.weights_b);
+      break;
+    case 8:
+    case 9:
+      other(cell.direction);
+      break;
+    case 10:
+      cell.span[random() % 3] = {random() % 2 == 0, static_cast<std::uint8_t>(random() % 5)};
+      break;
+    case 11:
+      c.cells.erase(c.cells.begin() + static_cast<std::ptrdiff_t>(random() % c.cells.size()));
+      break;
+    case 12:
+      c.cells.insert(c.cells.begin() + static_cast<std::ptrdiff_t>(random() % c.cells.size()),
+                     CertificateCell(c.cells[random() % c.cells.size()]));
+      break;
+    case 13:
+      c.all = !c.all;
+      break;
+    case 14:
+      c.relation = relation();
+      break;
+    case 15:
+      if (!c.contacts.empty()) c.contacts[random() % c.contacts.size()].relation = relation();
+      c.least = random() % 2 == 0 ? Relation::touching : Relation::crossing;
+      break;
+    case 16:
+      if (random() % 2 == 0 && !c.contacts.empty()) {
+        c.contacts.erase(c.contacts.begin() + static_cast<std::ptrdiff_t>(random() % c.contacts.size()));
+      } else {
+        c.contacts.push_back({static_cast<std::uint32_t>(random() % 8), static_cast<std::uint32_t>(random() % 8), {}});
+      }
+      break;
+    default: {
+      std::vector<std::uint32_t>& order = random() % 2 == 0 ? c.order_a : c.order_b;
+      if (!order.empty()) std::swap(order[random() % order.size()], order[random() % order.size()]);
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("certificate: answers of the CPU device are certified and accepted", "[lib][certificate]") {
+  std::mt19937_64 random = generator(1);
+  const auto device = open_cpu_device({1, ""});
+  int certified = 0, refused = 0;
+  std::map<CellKind, int> kinds;
+  for (int n = 0; n < 300; ++n) {
+    const std::array<Placed, 2> pair = random_pair(random);
+    const Object a(pair[0].mesh), b(pair[1].mesh);
+    for (const CollisionRequest& r : requests) {
+      const CollisionResult answer = collide(*device, a, pair[0].pose, b, pair[1].pose, r);
+      const CollisionQuery query = {&a, &pair[0].pose, &b, &pair[1].pose};
+      const Certificate certificate = certify(query, r, answer);
+      const CertificateVerdict verdict = check(pair, certificate);
+      ++(verdict.accepted ? certified : refused);
+      if (!verdict.accepted) UNSCOPED_INFO(verdict.reason << " in cell " << verdict.cell);
+      CHECK(verdict.accepted);
+      // The claim is that of the answer.
+      CHECK(certificate.contacts.empty() == !answer.hit);
+      if (answer.relation) CHECK(certificate.relation == answer.relation);
+      if (r.contacts == Contacts::all) {
+        REQUIRE(certificate.contacts.size() == answer.contacts.size());
+        for (std::size_t i = 0; i < answer.contacts.size(); ++i) {
+          CHECK(certificate.contacts[i].face_a == answer.contacts[i].face_a);
+          CHECK(certificate.contacts[i].face_b == answer.contacts[i].face_b);
+          if (answer.contacts[i].relation) CHECK(certificate.contacts[i].relation == answer.contacts[i].relation);
+        }
+      }
+      CHECK(check(pair, certify(query, r)).accepted);
+      for (const CertificateCell& cell : certificate.cells) ++kinds[cell.kind];
+    }
+  }
+  std::cout << "certified=" << certified << " refused=" << refused << '\n';
+  CHECK(refused == 0);
+  CHECK(kinds.size() == 6);  // each kind of cell was there
+}
+
+namespace {
+
+/// Changes certificates at random and judges those that are accepted; prints what came of it.
+void mutate_certificates(int pairs, std::mt19937_64& random) {
+  int mutations = 0, accepted = 0, false_accepts = 0;
+  for (int n = 0; n < pairs; ++n) {
+    const std::array<Placed, 2> pair = random_pair(random);
+    const Object a(pair[0].mesh), b(pair[1].mesh);
+    const Certificate certificate =
+        certify({&a, &pair[0].pose, &b, &pair[1].pose}, requests[random() % requests.size()]);
+    Judge judge(pair[0], pair[1]);
+    REQUIRE(judge.holds(certificate));
+    for (int m = 0; m < 25; ++m) {
+      Certificate changed = certificate;
+      mutate(changed, random);
+      if (changed.cells.empty()) continue;
+      const bool accepts = check(pair, changed).accepted;
+      ++mutations;
+      accepted += accepts ? 1 : 0;
+      if (accepts && !judge.holds(changed)) {
+        ++false_accepts;
+        std::cout << "accepted although it does not hold: " << describe(certificate) << " changed to "
+                  << describe(changed) << '\n';
+      }
+    }
+  }
+  std::cout << "mutations=" << mutations << " accepted=" << accepted << " false_accepts=" << false_accepts << '\n';
+  CHECK(false_accepts == 0);
+  CHECK(accepted > 0);
+  CHECK(accepted < mutations);
+}
+
+}  // namespace
+
+TEST_CASE("certificate: what was changed is accepted only where it is true", "[lib][certificate]") {
+  std::mt19937_64 random = generator(2);
+  mutate_certificates(150, random);
+}
+
+TEST_CASE("certificate: a hundred thousand changes", "[.mutations]") {
+  std::mt19937_64 random = generator(8);
+  mutate_certificates(4300, random);
+}
+
+TEST_CASE("certificate: lies are refused", "[lib][certificate]") {
+  std::mt19937_64 random = generator(3);
+  std::map<std::string, int> told;
+  for (int n = 0; n < 200; ++n) {
+    const std::array<Placed, 2> pair = random_pair(random);
+    const Object a(pair[0].mesh), b(pair[1].mesh);
+    const CollisionQuery query = {&a, &pair[0].pose, &b, &pair[1].pose};
+    const Certificate truth = certify(query, request(Contacts::all, true));
+    REQUIRE(truth.all);
+    const auto refuses = [&](const std::string& lie, const Certificate& c) {
+      ++told[lie];
+      INFO(lie);
+      CHECK_FALSE(check(pair, c).accepted);
+    };
+    for (std::size_t i = 0; i < truth.contacts.size(); ++i) {
+      Certificate c = truth;
+      c.contacts.erase(c.contacts.begin() + static_cast<std::ptrdiff_t>(i));
+      refuses("a hit dropped", c);
+      c = truth;
+      Relation& relation = *c.contacts[i].relation;
+      relation = relation == Relation::crossing ? Relation::touching : Relation::crossing;
+      refuses("a relation swapped", c);
+    }
+    for (std::uint32_t f = 0; f < 3; ++f) {
+      Certificate c = truth;
+      const auto place = std::lower_bound(c.contacts.begin(), c.contacts.end(), f,
+                                          [](const auto& x, std::uint32_t y) { return x.face_a <= y; });
+      c.contacts.insert(place, {f, 1000, Relation::touching});
+      refuses("a contact added", c);
+    }
+    for (const Relation relation : {Relation::apart, Relation::touching, Relation::crossing}) {
+      if (relation == truth.relation) continue;
+      Certificate c = truth;
+      c.relation = relation;
+      refuses("another relation", c);
+    }
+    for (std::size_t i = 0; i < truth.cells.size(); ++i) {
+      if (truth.cells[i].kind < CellKind::meet) continue;
+      Certificate c = truth;  // the contact, its cell too, is said to be separated
+      c.cells[i].kind = CellKind::separated;
+      c.cells[i].direction = {"1", "2", "-3"};
+      refuses("a cell made separated", c);
+    }
+    std::array<Placed, 2> other = pair;
+    other[1].pose.translation()[0] += 0.5;
+    CHECK(check(other, truth).reason == "the certificate is of other poses");
+    other = pair;
+    other[0].mesh.vertices[0][2] += 1;
+    CHECK_FALSE(check(other, truth).accepted);
+    // A wrong answer has no certificate.
+    CollisionResult wrong;
+    wrong.hit = truth.contacts.empty();
+    if (wrong.hit) wrong.contacts = {{0, 0, std::nullopt}};
+    CHECK_THROWS_AS(certify(query, {}, wrong), std::runtime_error);
+  }
+  CHECK(told.size() == 5);
+}
+
+TEST_CASE("certificate: devices add it if the request asks", "[lib][certificate]") {
+  std::mt19937_64 random = generator(6);
+  std::vector<std::unique_ptr<Device>> devices;
+  devices.push_back(open_cpu_device({1, ""}));
+  devices.push_back(open_cpu_device({3, ""}));
+  for (const std::string& name : device_names()) {
+    if (name != "cpu") devices.push_back(open_device(name));
+  }
+  for (int n = 0; n < 12; ++n) {
+    const std::array<Placed, 2> pair = random_pair(random);
+    const Object a(pair[0].mesh), b(pair[1].mesh);
+    std::vector<std::array<Placed, 2>> placed;
+    std::vector<PosePair> poses;
+    for (int i = 0; i < 40; ++i) {
+      placed.push_back(pair);
+      placed.back()[1].pose.translation() += Vec3d(i % 5, 0, 0);
+      poses.push_back({placed.back()[0].pose, placed.back()[1].pose});
+    }
+    CollisionRequest r = requests[static_cast<std::size_t>(n) % requests.size()];
+    for (const auto& device : devices) {
+      CAPTURE(device->name(), n);
+      r.certificate = true;
+      CollisionResult single;
+      device->collide({&a, &poses[0].a, &b, &poses[0].b}, r, single);
+      REQUIRE(single.certificate);
+      CHECK(check(placed[0], *single.certificate).accepted);
+      CHECK(single.hit == !single.certificate->contacts.empty());
+      const std::vector<CollisionResult> many = collide(*device, a, b, poses, r);
+      for (std::size_t i = 0; i < many.size(); ++i) {
+        REQUIRE(many[i].certificate);
+        CHECK(check(placed[i], *many[i].certificate).accepted);
+        CHECK(many[i].hit == !many[i].certificate->contacts.empty());
+      }
+      // A batch that ends early leaves nothing to the next one.
+      int taken = 0;
+      collide(*device, a, b, poses, r, [&](std::size_t, const CollisionResult&) { return ++taken < 3; });
+      r.certificate = false;
+      device->collide({&a, &poses[0].a, &b, &poses[0].b}, r, single);
+      CHECK_FALSE(single.certificate);
+      for (const CollisionResult& result : collide(*device, a, b, poses, r)) CHECK_FALSE(result.certificate);
+    }
+  }
+}
+
+TEST_CASE("certificate: of the pairs of a scene", "[lib][certificate]") {
+  std::mt19937_64 random = generator(7);
+  Scene scene;
+  std::map<Scene::Id, Placed> placed;
+  for (int n = 0; n < 12; ++n) {
+    for (Placed& p : random_pair(random)) {
+      p.mesh.file_face.clear();
+      placed[scene.add(Object(p.mesh), p.pose)] = p;
+    }
+  }
+  CollisionRequest r = request(Contacts::all, true);
+  r.certificate = true;
+  const auto device = open_cpu_device({2, ""});
+  const std::vector<Scene::Pair> touching = scene.contacts(*device, r);
+  REQUIRE_FALSE(touching.empty());
+  for (const Scene::Pair& pair : touching) {
+    REQUIRE(pair.result.certificate);
+    CHECK(pair.result.certificate->contacts.size() == pair.result.contacts.size());
+    CHECK(check({placed[pair.a], placed[pair.b]}, *pair.result.certificate).accepted);
+  }
+  const std::optional<Scene::Pair> one = scene.find_contact(*device, r);
+  REQUIRE(one);
+  CHECK(check({placed[one->a], placed[one->b]}, *one->result.certificate).accepted);
+}
+
+TEST_CASE("certificate: none of a wrong answer", "[lib][certificate]") {
+  const Mesh box = make_box({0, 0, 0}, {1, 1, 1});
+  const Object a(box);
+  const Pose here = Pose::Identity();
+  Pose there = here;
+  there.translation() = Vec3d(3, 0, 0);
+  CollisionResult wrong;
+  wrong.hit = true;
+  wrong.contacts = {{0, 0, std::nullopt}};
+  CHECK_THROWS_AS(add_certificate({&a, &here, &a, &there}, {}, wrong), std::runtime_error);
+  CHECK_FALSE(wrong.certificate);
+  wrong = {};
+  CHECK_THROWS_AS(add_certificate({&a, &here, &a, &here}, {}, wrong), std::runtime_error);
+}
+
+TEST_CASE("certificate: hostile input ends with a reason", "[lib][certificate]") {
+  const std::array<Placed, 2> pair = {{{make_box({0, 0, 0}, {1, 1, 1})}, {make_box({1, 0, 0}, {2, 1, 1})}}};
+  const Object a(pair[0].mesh), b(pair[1].mesh);
+  const Certificate good = certify({&a, &pair[0].pose, &b, &pair[1].pose}, request(Contacts::all, true));
+  REQUIRE(check(pair, good).accepted);
+  const auto reason = [&](const auto& change) {
+    Certificate c = good;
+    change(c);
+    const CertificateVerdict verdict = check(pair, c);
+    CHECK_FALSE(verdict.accepted);
+    return verdict.reason;
+  };
+  std::size_t separated = 0;
+  while (good.cells[separated].kind != CellKind::separated) ++separated;
+  for (const std::string& text :
+       {std::string(), std::string("-"), std::string("+1"), std::string("0x10"), std::string("01"), std::string("1e9"),
+        std::string("1/2"), std::string(" 1"), std::string(1000000, '9')}) {
+    CHECK(reason([&](Certificate& c) { c.cells[separated].direction[0] = text; }) ==
+          "not an integer of at most 20000 digits");
+  }
+  CHECK(reason([](Certificate& c) { c.version = 2; }) == "unknown version");
+  CHECK(reason([](Certificate& c) { c.cells.clear(); }) == "cells are missing");
+  CHECK(reason([](Certificate& c) { c.cells.push_back(c.cells.back()); }) == "a cell too many");
+  CHECK(reason([](Certificate& c) { c.order_a[0] = 0xffffffff; }) == "an order does not hold each face once");
+  CHECK(reason([](Certificate& c) { c.order_b.resize(100); }) == "an order does not hold each face once");
+  CHECK(reason([](Certificate& c) { c.cells[0].at = 0; }) == "a split leaves one half empty");
+  CHECK(reason([](Certificate& c) { c.cells[0].at = 0xffffffff; }) == "a split leaves one half empty");
+  CHECK(reason([](Certificate& c) { c.cells[0].kind = static_cast<CellKind>(17); }) == "unknown kind of cell");
+  CHECK(reason([&](Certificate& c) { c.cells[separated].direction = {"0", "0", "0"}; }) == "the direction is 0");
+  CHECK(reason([](Certificate& c) {
+          c.all = false;
+          c.order_a.clear();
+          c.order_b.clear();
+          c.cells.assign(1, {});
+          c.cells[0].kind = CellKind::meet;
+          c.cells[0].face_a = 0xffffffff;
+        }) == "there is no such face");
+  // The first cell that fails is named.
+  Certificate c = good;
+  c.cells[separated].direction = {"0", "0", "0"};
+  CHECK(check(pair, c).cell == separated);
+  // Meshes that are none.
+  std::array<Placed, 2> broken = pair;
+  broken[0].mesh.vertices[0][0] = std::numeric_limits<double>::quiet_NaN();
+  CHECK(check(broken, good).reason == "a number of a mesh or a pose is not finite");
+  broken = pair;
+  broken[0].mesh.faces[0].vertex[2] = 8;
+  CHECK(check(broken, good).reason == "a face has a vertex that does not exist");
+}
+
+TEST_CASE("certificate: coordinates at the ends of the doubles", "[lib][certificate]") {
+  Mesh huge, tiny;
+  testing::add_face(huge, {{-0x1p1000, 0, 0}, {0x1p1000, 0, 0}, {0, 0x1p1000, 0}});
+  testing::add_face(tiny, {{0, 0, -0x1p-1074}, {0, 0, 0x1p-1074}, {0x1p-1074, 0, 0x1p-1074}});
+  testing::add_face(tiny, {{0, 0, 0x1p-1074}, {0, 0, 0x1p-1073}, {0x1p-1074, 0, 0x1p-1074}});
+  std::array<Placed, 2> pair = {{{huge}, {tiny}}};
+  for (const double scale : {1.0, 0x1p500}) {
+    pair[0].pose.linear() = scale * Eigen::Matrix3d::Identity();
+    const Object a(huge), b(tiny);
+    const Certificate c = certify({&a, &pair[0].pose, &b, &pair[1].pose}, request(Contacts::all, true));
+    CHECK(check(pair, c).accepted);
+    REQUIRE(c.contacts.size() == 1);
+    CHECK(c.contacts[0].relation == Relation::touching);  // the vertex at z = 0 is on an edge of the triangle
+  }
+}
+
+namespace {
+
+std::string written(const Certificate& certificate) {
+  std::ostringstream out;
+  write_certificate(certificate, out);
+  return out.str();
+}
+
+Certificate read(const std::string& text) {
+  std::istringstream in(text);
+  return read_certificate(in);
+}
+
+/// Two boxes side by side, B moved by the pose; the page prints their certificate.
+std::array<Placed, 2> boxes_of_the_page(double gap) {
+  std::array<Placed, 2> pair = {{{make_box({0, 0, 0}, {1, 1, 1})}, {make_box({0, 0, 0}, {1, 1, 1})}}};
+  pair[1].pose.translation() = Vec3d(1 + gap, 0, 0);
+  return pair;
+}
+
+}  // namespace
+
+TEST_CASE("certificate: a file keeps it, and a damaged one is refused or still true", "[lib][certificate]") {
+  std::mt19937_64 random = generator(4);
+  int unread = 0, refused = 0, accepted = 0;
+  for (int n = 0; n < 60; ++n) {
+    const std::array<Placed, 2> pair = random_pair(random);
+    const Object a(pair[0].mesh), b(pair[1].mesh);
+    const Certificate c = certify({&a, &pair[0].pose, &b, &pair[1].pose}, requests[random() % requests.size()]);
+    const std::string text = written(c);
+    CHECK(written(read(text)) == text);
+    CHECK(check(pair, read(text)).accepted);
+    Judge judge(pair[0], pair[1]);
+    for (int m = 0; m < 20; ++m) {
+      std::string damaged = text;
+      damaged[random() % damaged.size()] = "0123456789-\",[]{}:\nabx"[random() % 22];
+      if (random() % 8 == 0) damaged.resize(random() % damaged.size());
+      try {
+        const Certificate changed = read(damaged);
+        const bool accepts = check(pair, changed).accepted;
+        ++(accepts ? accepted : refused);
+        if (accepts && !judge.holds(changed)) FAIL("accepted although it does not hold: " << damaged);
+      } catch (const std::runtime_error& error) {
+        ++unread;
+        CHECK(std::string(error.what()).rfind("certificate, line ", 0) == 0);
+      }
+    }
+  }
+  CHECK(unread > 0);
+  CHECK(refused > 0);
+  for (const std::string& text :
+       {std::string(), std::string("{}"), std::string("[1]\n"), std::string("{\"collisionchip_certificate\":2}"),
+        std::string(100000, '['), std::string("\xff\xfe")}) {
+    CHECK_THROWS_WITH(read(text), Catch::StartsWith("certificate, line 1: "));
+  }
+}
+
+TEST_CASE("certificate: the message about a long damaged line is short", "[lib][certificate]") {
+  // The parser of JSON shows all that it read of a word: spaces before it, digits of a number that is too large.
+  for (const std::string& line :
+       {"{" + std::string(2000, '\t') + "n", "{\"collisionchip_certificate\":" + std::string(5000, '9') + "}",
+        "{\"" + std::string(3000, 'x')}) {
+    try {
+      read(line + "\n");
+      FAIL("accepted");
+    } catch (const std::runtime_error& error) {
+      const std::string text = error.what();
+      CHECK(text.rfind("certificate, line 1: ", 0) == 0);
+      CHECK(text.size() < 300);
+    }
+  }
+}
+
+TEST_CASE("certificate: readers refuse what is no number, and orders that do not end", "[lib][certificate]") {
+  const std::array<Placed, 2> pair = boxes_of_the_page(0.5);
+  const Object a(pair[0].mesh), b(pair[1].mesh);
+  const std::string text = written(certify({&a, &pair[0].pose, &b, &pair[1].pose}, request(Contacts::all, false)));
+  const auto with = [&text](const std::string& what, const std::string& by) {
+    const std::size_t at = text.find(what);
+    REQUIRE(at != std::string::npos);
+    return std::string(text).replace(at, what.size(), by);
+  };
+  REQUIRE_NOTHROW(read(text));
+  for (const char* number : {"\"+1\"", "\"01\"", "\"1e3\"", "\"\\\"\"", "\"-\"", "\"\"", "\"1\\n\""}) {
+    CHECK_THROWS_WITH(read(with("\"direction\":[\"1\"", std::string("\"direction\":[") + number)),
+                      "certificate, line 2: not an integer of at most 20000 digits");
+  }
+  for (const char* run : {"[0,4294967295]", "[5,0]", "[0,5],[0,16777215]"}) {
+    CHECK_THROWS_WITH(read(with("[0,5]", run)), "certificate, line 1: an order of more than 2^24 faces, or a run back");
+  }
+  CHECK_THROWS_WITH(read(with("[0,5]", "[0,1,2]")), "certificate, line 1: a run is the first and the last number");
+  CHECK(check(pair, read(with("[0,5]", "[0,3],4,5"))).accepted);
+  CHECK(check(pair, read(with("[0,5]", "[0,4]"))).reason == "an order does not hold each face once");
+  CHECK_THROWS_WITH(read(text + text), "certificate: the file holds more than one; use CertificateReader");
+  std::istringstream both(text + text);
+  CertificateReader reader(both);
+  CHECK(check(pair, reader.next().value()).accepted);
+  CHECK(check(pair, reader.next().value()).accepted);
+  CHECK_FALSE(reader.next());
+  CHECK_FALSE(reader.next());
+}
+
+TEST_CASE("certificate: the page prints those of two boxes", "[lib][certificate]") {
+  std::ifstream file(CCHIP_CERTIFICATE_PAGE);
+  REQUIRE(file);
+  const std::string page((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  for (const auto& [gap, r] :
+       {std::make_pair(0.5, request(Contacts::all, false)), std::make_pair(-0.5, request(Contacts::first, false))}) {
+    const std::array<Placed, 2> pair = boxes_of_the_page(gap);
+    const Object a(pair[0].mesh), b(pair[1].mesh);
+    const Certificate c = certify({&a, &pair[0].pose, &b, &pair[1].pose}, r);
+    CHECK(check(pair, c).accepted);
+    INFO(written(c));
+    CHECK(page.find(written(c)) != std::string::npos);
+  }
+}
+
+namespace {
+
+/// For check_agrees.py: a line of JSON with meshes, poses, the verdict of this checker, and more fields.
+void print_case(const std::array<Placed, 2>& pair, bool accepted, const std::string& fields) {
+  std::cout << "{\"meshes\":[";
+  for (const std::size_t s : {0U, 1U}) {
+    const Mesh& mesh = pair[s].mesh;
+    std::cout << (s == 0 ? "[[" : ",[[");
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+      const Vec3d& v = mesh.vertices[i];
+      std::cout << (i == 0 ? "[" : ",[") << v[0] << ',' << v[1] << ',' << v[2] << ']';
+    }
+    std::cout << "],[";
+    for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+      std::cout << (i == 0 ? "[" : ",[") << mesh.faces[i].vertex[0];
+      for (std::size_t k = 1; k < std::size_t(mesh.faces[i].kind); ++k) std::cout << ',' << mesh.faces[i].vertex[k];
+      std::cout << ']';
+    }
+    std::cout << "],[";
+    for (std::uint32_t i = 0; i < mesh.faces.size(); ++i) std::cout << (i == 0 ? "" : ",") << mesh.number_in_file(i);
+    std::cout << "]]";
+  }
+  std::cout << "],\"poses\":[";
+  const char* comma = "";
+  for (const Placed& p : pair) {
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 4; ++column) {
+        std::cout << comma << p.pose(row, column);
+        comma = ",";
+      }
+    }
+  }
+  std::cout << "],\"accepted\":" << (accepted ? "true" : "false") << ',' << fields << "}\n";
+}
+
+/// A string of JSON.
+std::string in_quotes(const std::string& text) {
+  std::string result = "\"";
+  for (const char x : text) {
+    const std::size_t control = std::string("\n\r\f\t").find(x);
+    if (x == '"' || x == '\\') {
+      result += {'\\', x};
+    } else if (control != std::string::npos) {
+      result += {'\\', "nrft"[control]};
+    } else {
+      result += x;
+    }
+  }
+  return result + '"';
+}
+
+/// Does a file hold certificates of the pair, all of which are accepted?
+bool accepts_file(const std::array<Placed, 2>& pair, const std::string& text) {
+  std::istringstream in(text);
+  CertificateReader reader(in);
+  bool accepted = false;
+  try {
+    while (const std::optional<Certificate> certificate = reader.next()) {
+      if (!check(pair, *certificate).accepted) return false;
+      accepted = true;
+    }
+  } catch (const std::runtime_error&) {
+    return false;
+  }
+  return accepted;
+}
+
+}  // namespace
+
+TEST_CASE("certificate: cases for the checker in Python", "[.cases]") {
+  std::mt19937_64 random = generator(5);
+  std::cout.precision(17);
+  for (int n = 0; n < 60; ++n) {
+    const std::array<Placed, 2> pair = random_pair(random);
+    const Object a(pair[0].mesh), b(pair[1].mesh);
+    const Certificate truth = certify({&a, &pair[0].pose, &b, &pair[1].pose}, requests[random() % requests.size()]);
+    for (int m = 0; m < 10; ++m) {
+      Certificate c = truth;
+      if (m > 0) mutate(c, random);
+      std::string lines;
+      std::istringstream text(written(c));
+      for (std::string line; std::getline(text, line);) lines += (lines.empty() ? "" : ",") + in_quotes(line);
+      print_case(pair, check(pair, c).accepted, "\"lines\":[" + lines + ']');
+    }
+  }
+}
+
+namespace {
+
+struct FileCase {
+  bool accepted;
+  std::string text;
+};
+
+/// Files with what readers of JSON, of lines and of lists differ about.
+/// \param all no contacts; \param one a contact; of different poses
+std::array<std::vector<FileCase>, 2> file_cases(const std::string& all, const std::string& one) {
+  const auto with = [](std::string text, const std::string& what, const std::string& by) {
+    REQUIRE(text.find(what) != std::string::npos);
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
+      text.replace(at, what.size(), by);
+    }
+    return text;
+  };
+  const auto extra = [&](const std::string& value) {
+    return with(all, ",\"order_b\"", ",\"x\":" + value + ",\"order_b\"");
+  };
+  const std::string version = "\"collisionchip_certificate\":1";
+  const std::string faces = "\"faces\":[0,4]", contacts = "\"contacts\":[[0,4,null]]";
+  const std::vector<FileCase> of_all = {
+      {true, all},
+      {true, all + all},
+      {false, all + one},
+      {false, all + with(all, "\"1\"", "\"-1\"")},
+      {false, ""},
+      {false, "\n" + all},
+      {false, all + "\n"},
+      {true, all.substr(0, all.size() - 1)},
+      {true, with(all, "\n", "\r\n")},
+      {false, with(all, "\n", "\r")},
+      {false, with(all, "\n", "\f")},
+      {false, "\xef\xbb\xbf" + all},
+      {false, with(all, "\n", "\n\xef\xbb\xbf")},
+      {false, with(all, version, "\"collisionchip_certificate\":true")},
+      {false, with(all, version, "\"collisionchip_certificate\":1.0")},
+      {false, with(all, version, "\"collisionchip_certificate\":\"1\"")},
+      {false, with(all, version, "\"collisionchip_certificate\":2")},
+      {false, with(all, "{\"cell\"", "{" + version + ",\"cell\"")},
+      {false, with(all, "{\"cell\"", "{\"collisionchip\\u005fcertificate\":1,\"cell\"")},
+      {true, with(all, version, "\"collisionchip\\u005fcertificate\":1")},
+      {true, extra("\"\xe2\x80\xa8\"")},
+      {true, extra("\"\xc2\x85\"")},
+      {true, extra("\"\\u2028\"")},
+      {true, extra("\"\\ud83d\\ude00\"")},
+      {false, extra("\"\\ud800\"")},
+      {false, extra("{\"\\udc00\":1}")},
+      {false, extra("NaN")},
+      {false, extra("-Infinity")},
+      {false, extra("1e999")},
+      {true, extra("1e308")},
+      {false, extra("1" + std::string(400, '0'))},
+      {true, extra("1" + std::string(300, '0'))},
+      {true, extra("-0")},
+      {true, extra("[[[[]]]]")},
+      {false, extra("[[[[1]]]]")},
+      {false, extra("[[[[[]]]]]")},
+      {false, extra("[[[{\"y\":1}]]]")},
+      {true, extra("[[[{}]]]")},
+      {false, extra("01")},
+      {false, extra("'x'")},
+      {false, extra("\"\t\"")},
+      {false, with(all, "\"contacts\":[]", "\"contacts\":null")},
+      {false, with(all, "\"contacts\":[]", "\"contacts\":{}")},
+      {false, with(all, "\"contacts\":[]", "\"contacts\":\"\"")},
+  };
+  const std::vector<FileCase> of_one = {
+      {true, one},
+      {true, one + one + one},
+      {false, with(one, "\"order_a\":[]", "\"order_a\":{}")},
+      {false, with(one, "\"order_a\":[]", "\"order_a\":\"\"")},
+      {false, with(one, contacts, "\"contacts\":[[0.0,4,null]]")},
+      {false, with(one, contacts, "\"contacts\":[[false,4,null]]")},
+      {false, with(one, contacts, "\"contacts\":[[-0,4,null]]")},
+      {false, with(one, contacts, "\"contacts\":[[0,4]]")},
+      {false, with(one, faces, "\"faces\":[0,4,1]")},
+      {false, with(one, faces, "\"faces\":[0]")},
+      {false, with(one, faces, "\"faces\":[-0,4]")},
+      {false, with(one, faces, "\"faces\":[false,4]")},
+      {false, with(one, faces, "\"faces\":[0.0,4]")},
+  };
+  return {of_all, of_one};
+}
+
+/// Calls `each` for each pair and case.
+template <class Each>
+void for_file_cases(const Each& each) {
+  const std::array<std::array<Placed, 2>, 2> pairs = {boxes_of_the_page(0.5), boxes_of_the_page(-0.5)};
+  std::array<std::string, 2> text;
+  for (const std::size_t i : {0U, 1U}) {
+    const Object a(pairs[i][0].mesh), b(pairs[i][1].mesh);
+    text[i] = written(certify({&a, &pairs[i][0].pose, &b, &pairs[i][1].pose},
+                              request(i == 0 ? Contacts::all : Contacts::first, false)));
+  }
+  const auto cases = file_cases(text[0], text[1]);
+  for (const std::size_t i : {0U, 1U}) {
+    for (const FileCase& one : cases[i]) each(pairs[i], one);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("certificate: files that readers may differ about", "[lib][certificate]") {
+  for_file_cases([](const std::array<Placed, 2>& pair, const FileCase& one) {
+    INFO(one.text);
+    CHECK(accepts_file(pair, one.text) == one.accepted);
+  });
+}
+
+TEST_CASE("certificate: files for the checker in Python", "[.cases]") {
+  std::cout.precision(17);
+  for_file_cases([](const std::array<Placed, 2>& pair, const FileCase& one) {
+    print_case(pair, one.accepted, "\"file\":" + in_quotes(one.text));
+  });
+}

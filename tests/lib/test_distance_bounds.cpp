@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bounds of the search for the distance against integers of any size.
+#include <catch2/catch.hpp>
+#include <cchip/distance.hpp>
+#include <cchip/internal/tree/support_tree.hpp>
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <limits>
+
+#include "bvh_meshes.hpp"
+#include "distance_oracle.hpp"
+#include "exact/nearest_planes.hpp"
+#include "random_poses.hpp"
+#include "search/behind_plane.hpp"
+#include "search/frame_gap.hpp"
+
+using namespace cchip;
+using namespace cchip::testing;
+using namespace cchip_test;
+
+namespace {
+
+constexpr int unit_bits = 2300;
+
+/// Coordinates on a coarse grid, on its neighbours among the doubles, and anywhere.
+double coordinate(std::mt19937_64& random) {
+  const double whole = static_cast<double>(random() % 9) - 4;
+  switch (random() % 8) {
+    case 0:
+      return std::ldexp(static_cast<double>(random()), -63) - 1;
+    case 1:
+      return std::nextafter(whole, random() % 2 == 0 ? 9 : -9);
+    case 2:
+      return 0;
+    default:
+      return whole;
+  }
+}
+
+Vec3d vector(std::mt19937_64& random) {
+  const double x = coordinate(random);
+  const double y = coordinate(random);
+  return {x, y, coordinate(random)};
+}
+
+Mesh mesh_of_one_face(std::mt19937_64& random, double size) {
+  Mesh mesh;
+  const Vec3d p = size * vector(random);
+  const Vec3d q = size * vector(random);
+  add_face(mesh, {p, q, size * vector(random)});
+  return mesh;
+}
+
+/// Of any length, along an axis, a diagonal, or neither.
+Vec3d axis(std::mt19937_64& random) {
+  return std::ldexp(1.0, static_cast<int>(random() % 5) * 40 - 80) * vector(random);
+}
+
+}  // namespace
+
+TEST_CASE("distance bounds: gaps along a frame and a line", "[lib][distance]") {
+  std::mt19937_64 random(sim::seed_from_environment() + 60);
+  int tight = 0;
+  int apart = 0;
+  for (int i = 0; i < 6000; ++i) {
+    const Mesh mesh_a = mesh_of_one_face(random, std::ldexp(1.0, static_cast<int>(random() % 3) * 15 - 15));
+    const Mesh mesh_b = mesh_of_one_face(random, std::ldexp(1.0, static_cast<int>(random() % 3) * 15 - 15));
+    const Object a(mesh_a);
+    const Object b(mesh_b);
+    const PoseClass c = pose_classes[static_cast<std::size_t>(i) % std::size(pose_classes)];
+    Pose pose_a = random_pose(c, 4, random);
+    Pose pose_b = random_pose(i % 3 == 0 ? PoseClass::rigid : c, 4, random);
+    if (i % 4 == 0) pose_a.linear() = pose_b.linear() = Eigen::Matrix3d::Identity();
+    if (i % 8 == 0) pose_a.translation() = vector(random);
+    if (i % 8 == 0) pose_b.translation() = vector(random);
+    if (i % 50 == 0) pose_a.linear() *= i % 100 == 0 ? 0x1p300 : 0x1p-300;
+    const IntSquare<BigInt> square = square_of_distance(posed_points(mesh_a.primitive(0), pose_a, unit_bits),
+                                                        posed_points(mesh_b.primitive(0), pose_b, unit_bits));
+    FrameGap frame(a, pose_a, b, pose_b);
+    const bvh::SupportLine& line_a = a.tree().lines()[a.tree().root().first()];
+    const bvh::SupportLine& line_b = b.tree().lines()[b.tree().root().first()];
+    const double root = rough_root(square, unit_bits);
+    apart += root > 0;
+    const DistanceBounds near = PosedDistances(pose_a, pose_b).bounds(mesh_a.primitive(0), mesh_b.primitive(0));
+    for (int k = 0; k < 4; ++k) {
+      const Vec3d n = k == 0 ? Vec3d(near.point_b - near.point_a) : axis(random);
+      frame.set_axis(n);
+      const FrameGap::Line line = frame.line(n);
+      const double by_lines = frame(frame.reach_a(line_a), frame.reach_b(line_b));
+      const double by_faces = frame(frame.reach_a(mesh_a.primitive(0)), frame.reach_b(mesh_b.primitive(0)));
+      const double on_line = FrameGap::gap(line, FrameGap::reach_a(line, line_a), FrameGap::reach_b(line, line_b));
+      CAPTURE(i, k, n.transpose(), by_lines, by_faces, on_line, root, sim::seed_from_environment());
+      for (const double bound : {by_lines, by_faces, on_line}) REQUIRE(compare(square, bound, unit_bits) >= 0);
+      tight += root > 0 && by_faces > root * (1 - 1e-9) ? 1 : 0;
+    }
+  }
+  std::cout << "apart=" << apart << " tight=" << tight << '\n';
+  CHECK(apart > 3000);
+  CHECK(tight > 1000);  // a bound that is never near the distance would prove little
+}
+
+TEST_CASE("distance bounds: gaps of near objects, far from their origins", "[lib][distance]") {
+  // What is added up nearly cancels: sizes of A and B, or of a centre and what lies around it. The length of the normal
+  // is 7 and all coordinates are exact, so that the distance is known.
+  std::mt19937_64 random(sim::seed_from_environment() + 65);
+  const Vec3d normal(2, 3, 6);
+  const Vec3d u(3, -2, 0);
+  const Vec3d v(0, 2, -1);
+  const Pose here = Pose::Identity();
+  int tight = 0;
+  for (int i = 0; i < 1200; ++i) {
+    const auto part = [&random](int bits) {
+      return std::ldexp(static_cast<double>(random() % (1U << 20U)), bits - 20);
+    };
+    const double side = 1 + part(0);
+    const double distance = std::ldexp(7.0, -24 - static_cast<int>(random() % 8));
+    const double stretch = 1 + 0x1p-9 * part(0);
+    const Vec3d p(part(3), part(3), part(3));
+    const Vec3d over = p + 0.25 * side * (u + v) + distance / 7 * normal;
+    Mesh mesh_a;
+    Mesh mesh_b;
+    add_face(mesh_a, {p, p + side * u, p + side * v});
+    add_face(mesh_b, {over, over + stretch * u + 0x1p-10 * normal, over + stretch * v + 0x1p-10 * normal});
+    const bool is_swapped = i % 2 != 0;
+    const Object a(is_swapped ? mesh_b : mesh_a);
+    const Object b(is_swapped ? mesh_a : mesh_b);
+    FrameGap frame(a, here, b, here);
+    frame.set_axis(normal);
+    const auto gap = [&] { return frame(frame.reach_a(a.mesh().primitive(0)), frame.reach_b(b.mesh().primitive(0))); };
+    const double bound = gap();
+    CAPTURE(i, bound, distance, sim::seed_from_environment());
+    REQUIRE(bound <= distance);
+    tight += bound > 0.5 * distance ? 1 : 0;
+    // A zero vector is refused, and the axes stay.
+    frame.set_axis(Vec3d::Zero());
+    REQUIRE(gap() == bound);
+  }
+  CHECK(tight > 800);
+}
+
+TEST_CASE("distance bounds: gaps on a line, for any length of the axis", "[lib][distance]") {
+  Mesh mesh;
+  add_face(mesh, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  const Object face(mesh);
+  const Pose here = Pose::Identity();
+  Pose there = here;
+  there.translation().z() = 2;
+  const FrameGap frame(face, here, face, there);
+  const bvh::SupportLine& node = face.tree().lines()[face.tree().root().first()];
+  for (int exponent = -1074; exponent <= 1020; ++exponent) {
+    const FrameGap::Line line = frame.line(std::ldexp(1, exponent) * Vec3d(0, 0, 1));
+    const double gap = FrameGap::gap(line, FrameGap::reach_a(line, node), FrameGap::reach_b(line, node));
+    CAPTURE(exponent, gap);
+    CHECK(gap >= 0);
+    CHECK(gap <= 2);
+    if (std::abs(exponent) < 200) CHECK(gap > 1.99);
+  }
+  const FrameGap::Line none = frame.line(Vec3d::Zero());
+  CHECK(FrameGap::gap(none, FrameGap::reach_a(none, node), FrameGap::reach_b(none, node)) == 0);
+}
+
+TEST_CASE("distance bounds: half spaces are exact", "[lib][distance]") {
+  std::mt19937_64 random(sim::seed_from_environment() + 61);
+  int on = 0;
+  int beyond = 0;
+  const auto whole = [](double x) { return BigInt(Parts(x).mantissa) << (Parts(x).exponent + 1200); };
+  for (int i = 0; i < 100000; ++i) {
+    exact::Vec<exact::BigInt> normal;
+    std::array<BigInt, 3> same;
+    for (std::size_t k = 0; k < 3; ++k) {
+      auto entry = static_cast<std::int64_t>(random() % 7) - 3;
+      if (random() % 4 == 0) entry = static_cast<std::int64_t>(random());
+      const int shift = static_cast<int>(random() % 4) * (random() % 64 == 0 ? 500 : 40);
+      normal[k] = exact::BigInt(entry) << shift;
+      same[k] = BigInt(entry) << shift;
+    }
+    const Vec3d through = vector(random);
+    Vec3d v = vector(random);
+    if (i % 3 == 0) v = through;
+    if (i % 6 == 0) v[static_cast<Eigen::Index>(random() % 3)] = coordinate(random);
+    if (i % 100 == 0) v *= std::ldexp(1.0, static_cast<int>(random() % 2000) - 1000);
+    BigInt height = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto at = static_cast<Eigen::Index>(k);
+      height += same[k] * (whole(v[at]) - whole(through[at]));
+    }
+    CAPTURE(i, v.transpose(), through.transpose(), sim::seed_from_environment());
+    REQUIRE(exact::HalfSpace(normal, through).contains(v) == (height <= 0));
+    on += height == 0;
+    beyond += height > 0;
+  }
+  CHECK(on > 20000);
+  CHECK(beyond > 20000);
+}
+
+TEST_CASE("distance bounds: what lies behind the planes through the nearest points is not nearer", "[lib][distance]") {
+  std::mt19937_64 random(sim::seed_from_environment() + 62);
+  int behind = 0;
+  int equal = 0;
+  for (int i = 0; i < 6000; ++i) {
+    const PoseClass c = pose_classes[static_cast<std::size_t>(i) % std::size(pose_classes)];
+    const Pose pose_a = i % 3 == 0 ? Pose::Identity() : random_pose(c, 4, random);
+    const Pose pose_b = i % 3 == 0 ? Pose::Identity() : random_pose(i % 2 == 0 ? c : PoseClass::rigid, 4, random);
+    std::array<Primitive, 2> a;
+    std::array<Primitive, 2> b;
+    for (std::size_t k = 0; k < 2; ++k) {
+      a[k] = mesh_of_one_face(random, 1).primitive(0);
+      b[k] = mesh_of_one_face(random, 1).primitive(0);
+    }
+    a[1].v[0] = a[0].v[random() % 3];  // neighbours
+    b[1].v[0] = b[0].v[random() % 3];
+    const auto points = [&](const Primitive& p, const Pose& pose) { return posed_points(p, pose, unit_bits); };
+    const IntSquare<BigInt> square = square_of_distance(points(a[0], pose_a), points(b[0], pose_b));
+    if (square.over == 0) continue;
+    const exact::NearestPlanes planes(PosedDistances(pose_a, pose_b), a[0], b[0]);
+    CAPTURE(i, sim::seed_from_environment());
+    REQUIRE(compare(square, planes.bounds().lower, unit_bits) >= 0);
+    REQUIRE(compare(square, planes.bounds().upper, unit_bits) <= 0);
+    REQUIRE(planes.a().contains(a[0]));
+    REQUIRE(planes.b().contains(b[0]));
+    if (!planes.a().contains(a[1]) || !planes.b().contains(b[1])) continue;
+    ++behind;
+    const IntSquare<BigInt> other = square_of_distance(points(a[1], pose_a), points(b[1], pose_b));
+    const BigInt difference = other.over * square.under - square.over * other.under;
+    REQUIRE(difference >= 0);
+    equal += difference == 0;
+  }
+  std::cout << "behind=" << behind << " equal=" << equal << '\n';
+  CHECK(behind > 500);
+  CHECK(equal > 20);
+}
+
+TEST_CASE("distance bounds: nodes behind a plane", "[lib][distance]") {
+  std::mt19937_64 random(sim::seed_from_environment() + 63);
+  Mesh mesh;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3d p = vector(random);
+    add_face(mesh, {p, p + 0.25 * vector(random), p + 0.25 * vector(random)});
+  }
+  const Object object(mesh);
+  const TreeSide side{object.mesh(), object.tree()};
+  int inside = 0;
+  int outside = 0;
+  for (int i = 0; i < 200; ++i) {
+    exact::Vec<exact::BigInt> normal;
+    for (exact::BigInt& x : normal) x = static_cast<std::int64_t>(random() % 9) - 4;
+    const Vec3d through = random() % 2 == 0 ? mesh.vertices[random() % mesh.vertices.size()] : vector(random);
+    const exact::HalfSpace space(normal, through);
+    BehindPlane behind(side, space);
+    // All nodes: whether all faces below them are inside.
+    const std::function<bool(bvh::NodeRef)> check = [&](bvh::NodeRef node) {
+      bool all = true;
+      for (std::uint32_t k = node.first(); k < node.first() + node.count(); ++k) {
+        all &= node.is_leaf() ? space.contains(mesh.primitive(object.tree().faces()[k]))
+                              : check(object.tree().lines()[k].ref());
+      }
+      REQUIRE(behind.contains(node) == all);
+      ++(all ? inside : outside);
+      return all;
+    };
+    check(object.tree().root());
+  }
+  CHECK(inside > 1000);
+  CHECK(outside > 1000);
+}
+
+// Vertices and translations are 10^6 times as large as what they leave: the bound on rounding is theirs.
+TEST_CASE("distance bounds: faces whose large coordinates cancel", "[lib][distance]") {
+  std::mt19937_64 random(sim::seed_from_environment() + 65);
+  int open = 0;
+  for (int i = 0; i < 20; ++i) {
+    std::array<Primitive, 2> face;
+    std::array<Pose, 2> pose;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Vec3d far = 0x1p20 * vector(random);
+      pose[k] = random_pose(PoseClass::rigid, 1, random);
+      pose[k].translation() = 4.0 * static_cast<double>(k) * vector(random) - pose[k].linear() * far;
+      for (std::size_t v = 0; v < 3; ++v) face[k].v[v] = far + vector(random);
+    }
+    const IntSquare<BigInt> square =
+        square_of_distance(posed_points(face[0], pose[0], unit_bits), posed_points(face[1], pose[1], unit_bits));
+    const PosedDistances distances(pose[0], pose[1]);
+    CAPTURE(i, sim::seed_from_environment());
+    for (const DistanceBounds& bounds :
+         {distances.bounds(face[0], face[1]), distances.tight_bounds(face[0], face[1])}) {
+      REQUIRE(compare(square, bounds.lower, unit_bits) >= 0);
+      REQUIRE(compare(square, bounds.upper, unit_bits) <= 0);
+      if (bounds.lower == 0) continue;
+      for (const double d : {bounds.lower, std::nextafter(bounds.lower, 0.0), bounds.upper}) {
+        const PosedDistances::Answer near = distances.within(face[0], face[1], d);
+        REQUIRE(near.hit == (compare(square, d, unit_bits) <= 0));
+        open += near.open;
+      }
+    }
+  }
+  CHECK(open > 10);
+}
+
+TEST_CASE("distance bounds: many pairs at the same distance take few tests", "[lib][distance]") {
+  const auto plate = [](const Vec3d& corner, int n) {
+    Mesh mesh;
+    for (int i = 0; i < n; ++i) {
+      for (int k = 0; k < n; ++k) {
+        const Vec3d p = corner + Vec3d(i, k, 0) / n;
+        add_face(mesh, {p, p + Vec3d(1.0 / n, 0, 0), p + Vec3d(1.0 / n, 1.0 / n, 0)});
+        add_face(mesh, {p, p + Vec3d(1.0 / n, 1.0 / n, 0), p + Vec3d(0, 1.0 / n, 0)});
+      }
+    }
+    return mesh;
+  };
+  std::mt19937_64 random(sim::seed_from_environment() + 64);
+  for (const int n : {4, 16, 32}) {
+    const Object a(plate({0, 0, 0}, n));
+    const Object b(plate({0x1p-7, 0x1p-7, 0.125}, n));
+    for (const bool is_turned : {false, true}) {
+      Pose pose = random_pose(PoseClass::rigid, 1, random);
+      if (!is_turned) pose.linear().setIdentity();
+      const DistanceResult d = distance(a, pose, b, pose);
+      CAPTURE(n, is_turned, sim::seed_from_environment());
+      if (!is_turned) {
+        CHECK(d.lower == 0.125);
+        CHECK(d.upper == 0.125);
+      }
+      CHECK(d.upper == Approx(0.125).epsilon(1e-14));
+      CHECK(d.stats.pairs < 400);  // of the last plates about 10,000 pairs are as near
+      CHECK(d.stats.steps < 2000);
+      CHECK(d.stats.open < 10);
+    }
+  }
+}
