@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Partial reconfiguration with Quartus Prime Pro (Arria 10, Cyclone 10 GX, Stratix 10, Agilex): a base revision with
 # the static side cchip_pr_static and one persona, an implementation revision per persona, an .rbf of each.
-# NOT RUN BY THIS PROJECT: it has no Quartus. tests/vendor runs this file against recording stubs only; expect to adjust
+# NOT RUN BY THIS PROJECT: it has no Quartus. tests/vendor reads this file only; expect to adjust
 # `place` and the pins to your device (Chip Planner).
 #
 #   quartus_sh -t scripts/quartus/pr.tcl [NAME=VALUE...]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Area and clock of one module with Quartus Prime Pro, without partial reconfiguration; ports are virtual pins.
-# NOT RUN BY THIS PROJECT: it has no Quartus. tests/vendor runs this file against recording stubs only.
+# NOT RUN BY THIS PROJECT: it has no Quartus. tests/vendor reads this file only.
 #
 #   quartus_sh -t scripts/quartus/synth.tcl [NAME=VALUE...]
 #     top=cchip_primtest_tri_tri        module of rtl/cchip.f; cchip_chip is the whole chip

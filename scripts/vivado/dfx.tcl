@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Partial reconfiguration with Vivado (Dynamic Function eXchange, non-project flow): static side cchip_pr_static with
 # the partition u_region, every persona of cchip_pr_region in it and an empty one, full and partial bitstreams.
-# NOT RUN BY THIS PROJECT: it has no Vivado. tests/vendor runs this file against recording stubs only; expect to adjust
+# NOT RUN BY THIS PROJECT: it has no Vivado. tests/vendor reads this file only; expect to adjust
 # `regions` and the pins to your board.
 #
 #   vivado -mode batch -source scripts/vivado/dfx.tcl [-tclargs NAME=VALUE...]

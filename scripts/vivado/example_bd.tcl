@@ -2,7 +2,7 @@
 # A block design around the packaged IP, without a processor: JTAG writes registers and memory, the chip reads queries
 # from a block RAM and writes records to it. For a board with DRAM put its memory controller in the place of `memory`,
 # for a Zynq its processor in the place of `host`.
-# NOT RUN BY THIS PROJECT: it has no Vivado. tests/vendor runs this file against recording stubs only.
+# NOT RUN BY THIS PROJECT: it has no Vivado. tests/vendor reads this file only.
 #
 #   vivado -mode batch -source scripts/vivado/package_ip.tcl
 #   vivado -mode batch -source scripts/vivado/example_bd.tcl [-tclargs NAME=VALUE...]

@@ -2,7 +2,7 @@
 # Packages the exported chip (make export EXPORT_ARGS=cchip_chip) as an IP of Vivado: buses, clock, reset and interrupt
 # from the attributes of its ports, the address block of its registers, the memory its master reaches, legal values of
 # its parameters; ports and bus of swaps disappear where SWAPS is 0.
-# NOT RUN BY THIS PROJECT: it has no Vivado. tests/vendor runs this file against recording stubs only.
+# NOT RUN BY THIS PROJECT: it has no Vivado. tests/vendor reads this file only.
 #
 #   vivado -mode batch -source scripts/vivado/package_ip.tcl [-tclargs NAME=VALUE...]
 #     export=build/export/cchip_chip   folder that make export wrote

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Area and clock of one module with Vivado, without partial reconfiguration: out-of-context synthesis, place and route.
-# NOT RUN BY THIS PROJECT: it has no Vivado. tests/vendor runs this file against recording stubs only.
+# NOT RUN BY THIS PROJECT: it has no Vivado. tests/vendor reads this file only.
 #
 #   vivado -mode batch -source scripts/vivado/synth.tcl [-tclargs NAME=VALUE...]
 #     top=cchip_primtest_tri_tri   module of rtl/cchip.f; cchip_chip is the whole chip

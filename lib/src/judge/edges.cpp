@@ -38,16 +38,8 @@ std::vector<std::uint32_t> find_same_place(const Mesh& mesh) {
   return place;
 }
 
-/// Uses of an edge by faces.
-struct Edge {
-  std::uint32_t low;
-  std::uint32_t high;
-  std::uint32_t face;  ///< the first one
-  int uses = 1;
-  int net = 1;  ///< uses from low to high less those from high to low
-};
+}  // namespace
 
-/// Edges with their uses, each once.
 std::vector<Edge> find_edges(const Mesh& mesh, const std::vector<std::uint32_t>& place) {
   std::vector<Edge> edges;
   edges.reserve(mesh.faces.size() * 3);
@@ -57,8 +49,8 @@ std::vector<Edge> find_edges(const Mesh& mesh, const std::vector<std::uint32_t>&
     for (std::size_t i = 0; i < corners; ++i) {
       const std::uint32_t from = place[face.vertex[i]];
       const std::uint32_t to = place[face.vertex[(i + 1) % corners]];
-      if (from < to) edges.push_back({from, to, f, 1, 1});
-      if (from > to) edges.push_back({to, from, f, 1, -1});
+      if (from < to) edges.push_back({from, to, f, f, 1, 1});
+      if (from > to) edges.push_back({to, from, f, f, 1, -1});
     }
   }
   std::sort(edges.begin(), edges.end(), [](const Edge& x, const Edge& y) {
@@ -69,6 +61,7 @@ std::vector<Edge> find_edges(const Mesh& mesh, const std::vector<std::uint32_t>&
     if (count > 0 && edges[count - 1].low == edge.low && edges[count - 1].high == edge.high) {
       edges[count - 1].uses += 1;
       edges[count - 1].net += edge.net;
+      edges[count - 1].last_face = edge.face;
     } else {
       edges[count++] = edge;
     }
@@ -76,6 +69,8 @@ std::vector<Edge> find_edges(const Mesh& mesh, const std::vector<std::uint32_t>&
   edges.resize(count);
   return edges;
 }
+
+namespace {
 
 /// A line through two points: its direction without a common factor, and the moment of the direction, so that equal
 /// lines have equal numbers. In any unit that is common to all points.

@@ -23,6 +23,20 @@ struct Object::Edges {
   std::optional<Shells> shells;
 };
 
+/// Uses of an edge by faces.
+struct Edge {
+  std::uint32_t low;
+  std::uint32_t high;
+  std::uint32_t face;       ///< the first one
+  std::uint32_t last_face;  ///< the last one
+  int uses = 1;
+  int net = 1;  ///< uses from low to high less those from high to low
+};
+
+/// Edges with their uses, each once, by their ends; one whose ends coincide is none.
+/// \param place as Object::same_place()
+std::vector<Edge> find_edges(const Mesh& mesh, const std::vector<std::uint32_t>& place);
+
 }  // namespace cchip
 
 #endif

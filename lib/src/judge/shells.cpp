@@ -4,7 +4,6 @@
 #include <cchip/internal/judge/shells.hpp>
 #include <cmath>
 #include <numeric>
-#include <tuple>
 
 #include "edges.hpp"
 #include "exact/common_part.hpp"
@@ -87,37 +86,14 @@ void find_overlap(const Object& object, Shells& shells) {
 /// Joins faces over edges that exactly two use.
 void find_shells(const Object& object, Shells& shells) {
   const Mesh& mesh = object.mesh();
-  const std::vector<std::uint32_t>& place = object.same_place();
-  struct Use {
-    std::uint32_t low;
-    std::uint32_t high;
-    std::uint32_t face;
-    bool same_ends(const Use& x) const { return low == x.low && high == x.high; }
-  };
-  std::vector<Use> uses;
-  uses.reserve(mesh.faces.size() * 3);
-  for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
-    const auto corners = static_cast<std::size_t>(mesh.faces[f].kind);
-    for (std::size_t i = 0; i < corners; ++i) {
-      const auto [low, high] =
-          std::minmax({place[mesh.faces[f].vertex[i]], place[mesh.faces[f].vertex[(i + 1) % corners]]});
-      uses.push_back({low, high, f});
-    }
-  }
-  std::sort(uses.begin(), uses.end(), [](const Use& x, const Use& y) {
-    return std::tie(x.low, x.high, x.face) < std::tie(y.low, y.high, y.face);
-  });
   std::vector<std::uint32_t> root(mesh.faces.size());
   std::iota(root.begin(), root.end(), 0U);
   const auto find = [&root](std::uint32_t f) {
     while (root[f] != f) f = root[f] = root[root[f]];
     return f;
   };
-  for (std::size_t i = 0; i < uses.size();) {
-    std::size_t next = i + 1;
-    while (next < uses.size() && uses[next].same_ends(uses[i])) ++next;
-    if (next == i + 2) root[find(uses[i].face)] = find(uses[i + 1].face);
-    i = next;
+  for (const Edge& edge : find_edges(mesh, object.same_place())) {
+    if (edge.uses == 2) root[find(edge.face)] = find(edge.last_face);
   }
   shells.of_face.resize(mesh.faces.size());
   std::vector<std::uint32_t> number(mesh.faces.size(), std::numeric_limits<std::uint32_t>::max());
