@@ -11,7 +11,7 @@
 #   share/collisionchip/sim/rtl_models   Verilog for simulations only, file list sim.f
 #   share/bash-completion/completions/cchip, share/man/man1/cchip*.1   if cchip is built, the pages with help2man
 #   share/doc/collisionchip       licences
-# cpack makes a Debian package of that tree: make deb.
+# cpack makes a Debian package of that tree: scripts/run deb.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 find_package(ZLIB QUIET)  # ZLIB_FOUND of lib is not seen here

@@ -9,7 +9,7 @@
 #       sim/rtl_models/<module>_rules.sv if there is one: checkers that it binds beside the module's ports, and with
 #       CCHIP_COVERAGE <module>_bins.sv: what it counts
 # Waveforms are half of the generated code, so only models whose waves are looked at have them: those with WAVES, and those
-# that the setting CCHIP_WAVES names (make wave-of).
+# that the setting CCHIP_WAVES names (scripts/run wave-of).
 # SYSTEMC, for a library and all that is in it: classes are SystemC modules, without waveforms. Such a library and one of
 # the others cannot be in one program, their runtimes differ; its users need SystemC from pkg-config (sim/reconfig).
 # include() this file in every folder that calls them.

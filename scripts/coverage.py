@@ -3,11 +3,11 @@
 """What the tests reach: lines, branches and toggles of the RTL, branches and lines of the C++ library.
 
 usage: coverage.py [options] BUILD
-  BUILD           build folder with CCHIP_COVERAGE in which tests ran with CCHIP_COVERAGE_FOLDER=BUILD/coverage (make coverage)
+  BUILD           build folder with CCHIP_COVERAGE in which tests ran with CCHIP_COVERAGE_FOLDER=BUILD/coverage (scripts/run coverage)
   --missing       print every point that nothing reached
   --write         put the tables into docs/develop/coverage.md
-  --cpp           the library: BUILD is one by clang (make coverage-cpp)
-  --bins          the table of bins alone, after tests and campaigns of the chip (make coverage-bins)
+  --cpp           the library: BUILD is one by clang (scripts/run coverage-cpp)
+  --bins          the table of bins alone, after tests and campaigns of the chip (scripts/run coverage-bins)
 
 Bins count the clocks on which situations of two blocks of the chip meet (sim/rtl_models/cchip_chip_bins.sv).
 
@@ -58,7 +58,7 @@ def rtl_points(folder):
             kind = fields["page"].split("/")[0].removeprefix("v_")
             points[str(name.relative_to(ROOT)), int(fields["l"]), int(fields["n"]), kind, fields["o"]] += int(found[2])
     if not points:
-        raise Failed(f"no counts in {folder}; run the tests with CCHIP_COVERAGE_FOLDER={folder}: make coverage")
+        raise Failed(f"no counts in {folder}; run the tests with CCHIP_COVERAGE_FOLDER={folder}: scripts/run coverage")
     return points, bins
 
 
@@ -134,7 +134,7 @@ def shown(build):
     profile, folder = build / "coverage" / "cpp.profdata", build / "coverage"
     programs = [path for path in sorted((build / "bin").iterdir()) if path.is_file() and b"__llvm_covmap" in path.read_bytes()]
     if not programs or not any(folder.glob("*.profraw")):
-        raise Failed(f"no counts of the library in {folder}; run make coverage-cpp")
+        raise Failed(f"no counts of the library in {folder}; run scripts/run coverage-cpp")
     try:
         subprocess.run(["llvm-profdata", "merge", "-sparse", "-o", profile, *sorted(folder.glob("*.profraw"))], check=True, stderr=subprocess.PIPE, text=True)
         return subprocess.run(["llvm-cov", "show", "--show-branches=count", "--show-instantiations=false", f"--instr-profile={profile}", programs[0],

@@ -8,7 +8,7 @@ usage: mutants.py [MODULE...] [options]     without MODULE every module that has
   --seed N        of the choice of mutants (default 1)
   --jobs N        programs at the same time (default 2)
   --shard I/N     only every N-th module, counted from I = 1: for several machines; results of all are put together by --table
-  --build DIR     where unit_tests has been built (default build/release; `make mutants` builds it)
+  --build DIR     where unit_tests has been built (default build/release; `scripts/run mutants` builds it)
   --table         only the table of what was run so far
   --write         put the modules that have run into docs/figures/mutants.csv, and the table of its rows into docs/develop/mutants.md
   --again         run those that live once more, with the unit tests of today
@@ -503,7 +503,7 @@ def main():
     found = modules(options.build)
     unknown = [name for name in options.modules if name not in found]
     if unknown or not found:
-        print(f"mutants.py: no unit tests of {unknown[0]}" if unknown else f"mutants.py: no models in {options.build}; run: make mutants", file=sys.stderr)
+        print(f"mutants.py: no unit tests of {unknown[0]}" if unknown else f"mutants.py: no models in {options.build}; run: scripts/run mutants", file=sys.stderr)
         return 2
     chosen = [found[name] for name in options.modules] or list(found.values())
     part, of = map(int, options.shard.split("/"))

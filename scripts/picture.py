@@ -331,12 +331,12 @@ def main():
     try:
         old = read_png(options.picture)
     except (OSError, zlib.error, struct.error) as error:
-        sys.exit(f"picture.py: {options.picture}: cannot be read ({error}); draw it with make picture")
+        sys.exit(f"picture.py: {options.picture}: cannot be read ({error}); draw it with scripts/run picture")
     pairs = [pair for new_row, old_row in zip(rows, old) for pair in zip(new_row, old_row)]
     different = sum(abs(a - b) > TOLERANCE for a, b in pairs)
     print(f"{different} of {len(pairs)} bytes differ")
     if not pairs or different > MOST_DIFFERENT * len(pairs):
-        sys.exit(f"picture.py: {options.picture} is not of these meshes; draw it with make picture")
+        sys.exit(f"picture.py: {options.picture} is not of these meshes; draw it with scripts/run picture")
 
 
 if __name__ == "__main__":

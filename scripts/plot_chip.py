@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""docs/hardware/chip-speed.md and its plot from the CSV file that chip_speed writes (make bench-chip).
+"""docs/hardware/chip-speed.md and its plot from the CSV file that chip_speed writes (scripts/run bench-chip).
 
 usage: plot_chip.py [--csv PATH | --check | --check-plot]
   --csv PATH    take this run: copy it to docs/figures/chip_speed.csv, rewrite page and plot
@@ -99,4 +99,4 @@ def draw(run):
 
 
 if __name__ == "__main__":
-    sys.exit(page_and_plots(__doc__, PAGE, RUN, {PLOT: draw}, "make bench-chip writes build/bench/chip.csv", Run, tables))
+    sys.exit(page_and_plots(__doc__, PAGE, RUN, {PLOT: draw}, "scripts/run bench-chip writes build/bench/chip.csv", Run, tables))

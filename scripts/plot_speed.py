@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""docs/cpp/speed.md, its plot and the small one of README.md from the CSV file that collide_speed writes (make bench-collide).
+"""docs/cpp/speed.md, its plot and the small one of README.md from the CSV file that collide_speed writes (scripts/run bench-collide).
 
 usage: plot_speed.py [--csv PATH | --check | --check-plot]
   --csv PATH    take this run: copy it to docs/figures/collide_speed.csv, rewrite page and plots
@@ -186,4 +186,4 @@ def draw_small(run):
 
 if __name__ == "__main__":
     sys.exit(page_and_plots(__doc__, PAGE, RUN, {PLOT: draw, SMALL: draw_small},
-                            "make bench-collide writes build/bench/collide.csv", Run, tables))
+                            "scripts/run bench-collide writes build/bench/collide.csv", Run, tables))

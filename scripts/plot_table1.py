@@ -3,7 +3,7 @@
 """docs/paper/table1.md from the program cchip_table1: its output, the overhead curves as CSV, and their plot.
 
 usage: plot_table1.py [--program PATH] [--check | --check-plot]
-  --program PATH  cchip_table1 (default build/release/bin/cchip_table1, built by `make table1`)
+  --program PATH  cchip_table1 (default build/release/bin/cchip_table1, built by `scripts/run table1`)
   --check         write nothing: compare page and CSV with a fresh run of the program
   --check-plot    write nothing: compare the plot with one drawn from the checked-in CSV and page
 
@@ -24,7 +24,7 @@ from generated_page import ROOT, compare, fail, page_with, plain_number, start_p
 PAGE = ROOT / "docs" / "paper" / "table1.md"
 CURVES = ROOT / "docs" / "figures" / "table1_overhead.csv"
 PLOT = CURVES.with_suffix(".svg")
-COMMAND = "make table1-plot"
+COMMAND = "scripts/run table1-plot"
 
 
 def run(program):
@@ -34,7 +34,7 @@ def run(program):
         try:
             result = subprocess.run([program, "--csv", curves], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         except OSError as error:
-            fail(f"{program} cannot be run ({error.strerror}); build it with: make table1")
+            fail(f"{program} cannot be run ({error.strerror}); build it with: scripts/run table1")
         if result.returncode:
             fail(f"{program} failed (exit code {result.returncode}): {result.stderr.strip()}")
         return result.stdout, curves.read_text()

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The table "A robot cell" of docs/cpp/speed.md from the CSV file that robot_speed writes (make bench-robot).
+"""The table "A robot cell" of docs/cpp/speed.md from the CSV file that robot_speed writes (scripts/run bench-robot).
 
 usage: robot_table.py [--csv PATH | --check]
   --csv PATH    take this run: copy it to docs/figures/robot_speed.csv and rewrite the table
@@ -45,4 +45,4 @@ def table(text):
 
 
 if __name__ == "__main__":
-    sys.exit(page_and_plots(__doc__, PAGE, RUN, {}, "make bench-robot writes build/bench/robot.csv", str, table, "robot"))
+    sys.exit(page_and_plots(__doc__, PAGE, RUN, {}, "scripts/run bench-robot writes build/bench/robot.csv", str, table, "robot"))

@@ -9,7 +9,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-CODE = re.compile(r"\.(cpp|hpp|v|vh|py|sh|cmake|c|h|in|html|tcl|rdl|json)$|(^|/)(CMakeLists\.txt|Makefile|lint|bootstrap|run)$")
+CODE = re.compile(r"\.(cpp|hpp|v|vh|py|sh|cmake|c|h|mk|in|html|tcl|rdl|json)$|(^|/)(CMakeLists\.txt|Makefile|lint|bootstrap|run)$")
 # Room: the files that belong to it, the first that fits; generated files are none of it.
 GENERATED = re.compile(r"internal/wire/(definitions|registers|chip_registers)\.hpp$|^rtl/include/.*\.vh$|^rtl/regs/|^docs/figures/")
 ROOMS = [("rtl", r"^rtl/"), ("command", r"^(lib/app|lib/program|sim/app)/"), ("python", r"^(lib/)?python/(src|collisionchip)/|^(lib/)?python/[^/]*$"),

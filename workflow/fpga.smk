@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Place and route of rows of scripts/fpga.py over seeds, a job for each: make fpga-sweep, docs/develop/scaling.md.
+# Place and route of rows of scripts/fpga.py over seeds, a job for each: scripts/run fpga-sweep, docs/develop/scaling.md.
 # Settings: --config rows="tri_tri tri_tri_substages8" seeds=5 parameter=SUBSTAGES options="--freq=125 --nextpnr=PATH" python=PYTHON_WITH_MATPLOTLIB
 import pathlib
 

@@ -93,7 +93,7 @@ inline std::vector<PythonAnswers> ask_python(const std::string& python, const st
     }
     result.push_back(answers);
   }
-  if (result.empty()) throw std::runtime_error(command + ": no answer; run make peers, or leave --python out");
+  if (result.empty()) throw std::runtime_error(command + ": no answer; run scripts/run peers, or leave --python out");
   return result;
 }
 

@@ -6,7 +6,7 @@ and the error of a distance that it allows; then for each query a line
     distance, nearest points of A and of B, 1 or 0 for "at most half the distance?", "at most twice the distance?" and "do they meet?",
     microseconds of these four calls
 
-with numbers as float.hex() writes them. Only the call is timed, the shorter of two. Runs in build/touching, which `make peers` makes.
+with numbers as float.hex() writes them. Only the call is timed, the shorter of two. Runs in build/touching, which `scripts/run peers` makes.
 
 usage: distance_python.py QUERIES"""
 import importlib.metadata

@@ -18,7 +18,7 @@ struct OtherLibrary {
   const char* module;  ///< empty: not found
   const char* remedy;
 };
-inline constexpr OtherLibrary other_libraries[] = {{"Coal", CCHIP_COAL_MODULE, "make peers"},
+inline constexpr OtherLibrary other_libraries[] = {{"Coal", CCHIP_COAL_MODULE, "scripts/run peers"},
                                                    {"CGAL", CCHIP_CGAL_MODULE, "scripts/bootstrap"},
                                                    {"ODE", CCHIP_ODE_MODULE, "scripts/bootstrap --dev"}};
 

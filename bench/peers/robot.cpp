@@ -156,7 +156,7 @@ class Reader {
       result = package / name.substr(slash + 1);
     }
     if (!std::filesystem::is_regular_file(result)) {
-      fail(place, fmt::format("no mesh {}; install the robots again: make robots", result.string()));
+      fail(place, fmt::format("no mesh {}; install the robots again: scripts/run robots", result.string()));
     }
     return result.string();
   }
@@ -169,10 +169,10 @@ class Reader {
 Robot::Robot(const std::filesystem::path& urdf, const std::filesystem::path& package) {
   tinyxml2::XMLDocument document;
   if (document.LoadFile(urdf.c_str()) == tinyxml2::XML_ERROR_FILE_NOT_FOUND) {
-    throw std::runtime_error(urdf.string() + ": no such file; install the robots: make robots");
+    throw std::runtime_error(urdf.string() + ": no such file; install the robots: scripts/run robots");
   }
   if (document.Error()) {
-    throw std::runtime_error(fmt::format("{}:{}: {}; install the robots again: make robots", urdf.string(),
+    throw std::runtime_error(fmt::format("{}:{}: {}; install the robots again: scripts/run robots", urdf.string(),
                                          document.ErrorLineNum(), document.ErrorName()));
   }
   const Reader read(urdf);
@@ -265,7 +265,7 @@ Robot::Robot(const std::filesystem::path& urdf, const std::filesystem::path& pac
 Robot::Robot(const std::filesystem::path& urdf, const std::filesystem::path& /*package*/) {
   throw std::runtime_error(urdf.string() +
                            ": cannot be read, this program was built without Debian's libtinyxml2-dev; install it with "
-                           "scripts/bootstrap --dev, then run make bench-robot");
+                           "scripts/bootstrap --dev, then run scripts/run bench-robot");
 }
 
 #endif

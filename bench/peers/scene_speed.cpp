@@ -201,7 +201,7 @@ class Benchmark {
 #ifndef CCHIP_HAS_BULLET
     fmt::print("without Bullet: scripts/bootstrap --dev brings it\n");
 #endif
-    if (*CCHIP_COAL_MODULE == 0) fmt::print("without Coal: make peers brings it\n");
+    if (*CCHIP_COAL_MODULE == 0) fmt::print("without Coal: scripts/run peers brings it\n");
     fmt::print("frames={} contacts={} their_differences={} differences={}\n", frames_, contacts_, their_differences_,
                differences_);
     return differences_ == 0 ? 0 : 3;

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """No page of the site is cut: every page is shown by a browser without a window (Debian's chromium) at two widths.
 
-usage: check_layout.py SITE [--screenshots FOLDER PAGE...]     (make docs-layout)
+usage: check_layout.py SITE [--screenshots FOLDER PAGE...]     (scripts/run docs-layout)
   At 1300 px no table, picture or drawing of text is wider than its page (code may scroll). At 400 px, a telephone, the page itself does not scroll
   sideways and pictures fit; a table, drawing or code that needs more room scrolls in a box of its own.
   --screenshots: instead write a PNG of each page at each width.

@@ -23,6 +23,6 @@ if not measured:
     sys.exit("docs/hardware/fpga.md does not name the git tree of rtl/ that was measured")
 tree = subprocess.run(["git", "-C", str(root), "rev-parse", "HEAD:rtl"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
 if tree.returncode == 0 and tree.stdout.strip() != measured[1]:
-    print(f"note: docs/hardware/fpga.md was measured on another rtl/ ({measured[1][:12]}) than that of HEAD; make fpga measures again")
+    print(f"note: docs/hardware/fpga.md was measured on another rtl/ ({measured[1][:12]}) than that of HEAD; scripts/run fpga measures again")
 print(f"{len(proved)} modules with proofs")
 sys.exit(set(proved) != set(listed) or doubles or not proved)

@@ -28,7 +28,7 @@ def columns(table, names):
 
 
 def with_python(root, table_program, table, last):
-    """The table and its last line with the columns of Python's libraries, if `make peers` has installed these."""
+    """The table and its last line with the columns of Python's libraries, if `scripts/run peers` has installed these."""
     python = root / "build" / "touching" / "bin" / "python"
     if not (root / "build" / "touching" / "touching_requirements.txt").exists():
         return table, last
@@ -62,7 +62,7 @@ def check_far(root, table_program, write):
     head = [cell.strip() for cell in next(line for line in shown[0].splitlines() if line.startswith("| ")).strip("|").split("|")]
     both = [name for name in names if name in head]
     if len(both) < 7 or columns(shown[0], both) != columns(table, both):
-        return ["docs/cpp/touching_stays.md: the table is stale, run this script with --write after make peers"]
+        return ["docs/cpp/touching_stays.md: the table is stale, run this script with --write after scripts/run peers"]
     return []
 
 

@@ -475,7 +475,7 @@ def check():
     present = re.search(r"<!-- generated: begin proofs -->\n(.*?)<!-- generated: end -->", PAGE.read_text(), re.S)
     if present and present[1] == table(recorded()):
         return 0
-    print("run.py: the table of docs/develop/formal.md does not say which proofs are of the RTL of today; run: tests/formal/run.py --table, or prove anew: make formal-all", file=sys.stderr)
+    print("run.py: the table of docs/develop/formal.md does not say which proofs are of the RTL of today; run: tests/formal/run.py --table, or prove anew: scripts/run formal-all", file=sys.stderr)
     return 1
 
 

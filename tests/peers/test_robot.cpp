@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reader of robots that make bench-robot uses, on a robot of its own.
+// The reader of robots that scripts/run bench-robot uses, on a robot of its own.
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -113,7 +113,7 @@ TEST_CASE("Robot: what is wrong with a URDF", "[ref][robot]") {
     CHECK_THROWS_WITH(Robot(file, folder.path), Contains(message));
   };
   CHECK_THROWS_WITH(Robot(folder.path / "none.urdf", folder.path),
-                    Contains("none.urdf: no such file") && Contains("make robots"));
+                    Contains("none.urdf: no such file") && Contains("scripts/run robots"));
   refused(replaced("</robot>", ""), "XML_ERROR");
   refused("<a/>", "no <robot>");
   refused(replaced("robots/one.obj", "robots/two.obj"), "wrong.urdf:5: no mesh ");

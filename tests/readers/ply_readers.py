@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Other programs read the PLY files that cchip writes, and the remedies in its error messages are run.
 
-usage: ply_readers.py CCHIP      (from `make test-ply`, whose Python has the programs)
+usage: ply_readers.py CCHIP      (from `scripts/run test-ply`, whose Python has the programs)
 
 Each program must see the vertices, faces and colours that are in the file: to the last bit where it keeps doubles, else rounded to
 single precision. The last line is `readings=N remedies=N failures=N`. Exit code 1 if one failed."""

@@ -215,7 +215,7 @@ TEST_CASE("harness: a waveform of a model without one is an error", "[unit][harn
   options.trace_path = wave("harness_test_none");
   CHECK_THROWS_WITH(Simulation<Vcchip_skid_buffer>(options),
                     options.trace_path +
-                        ": no waveform, the model was built without; run: make wave-of "
+                        ": no waveform, the model was built without; run: scripts/run wave-of "
                         "MODEL=Vcchip_skid_buffer");
   CHECK_NOTHROW(with_wave_on_failure(
       "harness_test_none", [](const SimulationOptions& given) { Simulation<Vcchip_skid_buffer> simulation(given); }));

@@ -16,7 +16,7 @@ for tool in x86_64-w64-mingw32-g++-posix apt-get dpkg-source; do
   }
 done
 if [ ! -d "${NANOBIND:-}/include" ]; then
-  echo "run.sh: NANOBIND names no folder of nanobind; start it by: make cross-windows" >&2
+  echo "run.sh: NANOBIND names no folder of nanobind; start it by: scripts/run cross-windows" >&2
   exit 1
 fi
 

@@ -3,7 +3,7 @@
 """A campaign in shards, with shards killed in the middle, has the counts of the campaign in one piece.
 
 usage: test_campaign.py [Merge|Local|Slurm|Sweep|Dask]      environment: CCHIP_BIN, the folder with cchip_campaign
-Sweep: the table of make fpga-sweep from made-up clocks. Dask: make test-dask, with fewer queries. Merge and Sweep need neither Snakemake nor Dask. Exit codes: 0 passed, 1 failed, 77 skipped."""
+Sweep: the table of scripts/run fpga-sweep from made-up clocks. Dask: scripts/run test-dask, with fewer queries. Merge and Sweep need neither Snakemake nor Dask. Exit codes: 0 passed, 1 failed, 77 skipped."""
 import json
 import os
 import pathlib
@@ -168,7 +168,7 @@ class Slurm(Case):
 
 
 class Sweep(Case):
-    """What make fpga-sweep places and merges."""
+    """What scripts/run fpga-sweep places and merges."""
 
     def test_place(self):
         """A netlist that is there, and a program in the place of nextpnr that notes what it was asked."""
@@ -211,7 +211,7 @@ class Sweep(Case):
         self.assertFalse((self.folder / "t.csv").exists())
 
 
-@unittest.skipUnless((ROOT / "build/dask/installed").exists(), "no build/dask: make test-dask")
+@unittest.skipUnless((ROOT / "build/dask/installed").exists(), "no build/dask: scripts/run test-dask")
 class Dask(unittest.TestCase):
     def test_workers_killed(self):
         made = subprocess.run([ROOT / "build/dask/bin/python", "-B", ROOT / "lib/python/tests/over_dask.py", "50000"], stdout=subprocess.PIPE,

@@ -81,7 +81,7 @@ struct PlyCurve {
 
 /// Writes a binary PLY (little endian, doubles). Each face has its own vertices, which have its colour. Quads are cut
 /// in two if there are triangles, too. The curves follow as edges between vertices of their own, behind those of the
-/// faces; without any the file has no edges. `make test-ply` reads such files with other programs
+/// faces; without any the file has no edges. `scripts/run test-ply` reads such files with other programs
 /// (docs/cpp/mesh_files.md).
 /// \throws std::invalid_argument unless there is one colour for each face
 void write_ply(std::ostream& out, const Mesh& mesh, const std::vector<Colour>& face_colours,

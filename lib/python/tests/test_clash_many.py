@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""clash_many.py on boxes, whose relations are known. `make test-dask` runs it; skipped where distributed is not installed."""
+"""clash_many.py on boxes, whose relations are known. `scripts/run test-dask` runs it; skipped where distributed is not installed."""
 import csv
 import pathlib
 import re

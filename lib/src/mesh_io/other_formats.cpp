@@ -16,7 +16,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-// make test-ply runs the commands in Python, Gmsh and MeshLab, tests/system/test_file_messages.cpp those of assimp.
+// scripts/run test-ply runs the commands in Python, Gmsh and MeshLab, tests/system/test_file_messages.cpp those of assimp.
 // In a remedy % stands for the name of the file.
 constexpr std::string_view by_gmsh = "mesh it first, for example with `gmsh -2 % -o part.stl` or with FreeCAD";
 constexpr std::string_view by_ifcopenshell =

@@ -205,7 +205,7 @@ class Simulation {
     } else if (!options_.trace_optional) {
       throw SimulationError(
           options_.trace_path +
-          ": no waveform, the model was built without; run: make wave-of MODEL=" + model_->modelName());
+          ": no waveform, the model was built without; run: scripts/run wave-of MODEL=" + model_->modelName());
     }
   }
 
@@ -252,7 +252,7 @@ class Simulation {
   std::string wave() const {
     if (trace_) return options_.trace_path;
     if (options_.trace_path.empty() || detail::HasTrace<Model>::value) return "none";
-    return std::string("none: built without, run: make wave-of MODEL=") + model_->modelName();
+    return std::string("none: built without, run: scripts/run wave-of MODEL=") + model_->modelName();
   }
 
   SimulationOptions options_;
