@@ -14,7 +14,7 @@ CODE = re.compile(r"\.(cpp|hpp|v|vh|py|sh|cmake|c|h|mk|in|html|tcl|rdl|json)$|(^
 GENERATED = re.compile(r"internal/wire/(definitions|registers|chip_registers)\.hpp$|^rtl/include/.*\.vh$|^rtl/regs/|^docs/figures/")
 ROOMS = [("rtl", r"^rtl/"), ("command", r"^(lib/app|lib/program|sim/app)/"), ("python", r"^(lib/)?python/(src|collisionchip)/|^(lib/)?python/[^/]*$"),
          ("tests", r"^(tests|(lib/)?python/tests)/"), ("examples", r"^(examples|(lib/)?python/examples)/"),
-         ("library", r"^(lib/|cpp_ref/(include/cchip|src)/(cpu|collide|mesh|mesh_io|certificate|geometry|device)/)"), ("models and host", r"^cpp_ref/"),
+         ("library", r"^(lib/|cpp_ref/(include/cchip|src)/(cpu|collide|mesh|mesh_io|certificate|geometry|device|exact|bvh)/|cpp_ref/include/cchip/internal/(exact|bvh|collide|geometry|certificate)/)"), ("models and host", r"^cpp_ref/"),
          ("simulation", r"^sim/"), ("bench", r"^bench/"),
          ("scripts", r"^(scripts|workflow|cmake|\.ci)/|^(Makefile|CMakeLists\.txt)$")]
 PRODUCT = ("rtl", "library", "models and host", "command", "python")

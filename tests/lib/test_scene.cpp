@@ -632,28 +632,6 @@ TEST_CASE("scene: targets of many poses and of another scene", "[lib][scene]") {
   }
 }
 
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wdeprecated-declarations"
-TEST_CASE("scene: the old names of contacts()", "[lib][scene]") {
-  const auto device = open_device("cpu");
-  const Object cube(box({1, 1, 1}));
-  Scene scene;
-  scene.add(cube);
-  scene.add(cube, at(1, 0, 0), {2, ~std::uint64_t{0}});
-  CHECK(ids_of(scene.touching(*device)) == Pairs{{1, 2}});
-  CHECK(ids_of(scene.touching(*device, 1)) == std::vector<Id>{2});
-  CHECK(ids_of(scene.touching(*device, cube, at(1, 0, 0), {}, {1, 2})) == std::vector<Id>{2});
-  CHECK(scene.find_touching(*device));
-  CHECK(scene.find_touching(*device, 2)->id == 1);
-  CHECK_FALSE(scene.find_touching(*device, cube, at(5, 0, 0)));
-  std::size_t taken = 0;
-  scene.for_each_touching(*device, [&](const Scene::Pair&) { return ++taken != 0; });
-  scene.for_each_touching(*device, 1, [&](const Scene::Hit&) { return ++taken != 0; });
-  scene.for_each_touching(*device, cube, at(1, 0, 0), [&](const Scene::Hit&) { return ++taken != 0; });
-  CHECK(taken == 4);
-}
-#pragma GCC diagnostic pop
-
 TEST_CASE("scene: stops when it is told to", "[lib][scene]") {
   const auto device = open_cpu_device({3, {}});
   const Object cube(box({1, 1, 1}));

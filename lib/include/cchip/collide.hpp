@@ -42,7 +42,6 @@ struct CollisionRequest {
   /// without: two bars of one section, one pushed into the other, have no faces that cross (docs/cpp/touching.md).
   /// Relation::apart is refused.
   Relation least = Relation::touching;
-  using Counts [[deprecated("use Relation")]] = Relation;
   /// Tell touching from crossing: fills CollisionResult::relation and Contact::relation, which `least` does in any case
   /// if it is Relation::crossing. With Contacts::first the search continues after a contact that only touches, until
   /// one crosses or none is left.
@@ -103,7 +102,6 @@ struct CollisionStats {
     return *this;
   }
 };
-using CollisionCounts [[deprecated("use CollisionStats")]] = CollisionStats;
 
 struct CollisionResult {
   bool hit = false;  ///< there is a contact

@@ -155,48 +155,6 @@ class Scene {
   void for_each_contact(Device& device, const Target& target, const HitSink& take,
                         const CollisionRequest& request = {}) const;
 
-  // Names of version 0.1, for one release.
-
-  [[deprecated("use contacts()")]] std::vector<Pair> touching(Device& device,
-                                                              const CollisionRequest& request = {}) const {
-    return contacts(device, request);
-  }
-  [[deprecated("use contacts()")]] std::vector<Hit> touching(Device& device, Id id,
-                                                             const CollisionRequest& request = {}) const {
-    return contacts(device, id, request);
-  }
-  [[deprecated("use contacts(device, {object, pose})")]] std::vector<Hit> touching(
-      Device& device, const Object& object, const Pose& pose, const CollisionRequest& request = {},
-      const CollisionGroups& groups = {}) const {
-    return contacts(device, {object, pose, groups}, request);
-  }
-  [[deprecated("use find_contact()")]] std::optional<Pair> find_touching(Device& device,
-                                                                         const CollisionRequest& request = {}) const {
-    return find_contact(device, request);
-  }
-  [[deprecated("use find_contact()")]] std::optional<Hit> find_touching(Device& device, Id id,
-                                                                        const CollisionRequest& request = {}) const {
-    return find_contact(device, id, request);
-  }
-  [[deprecated("use find_contact(device, {object, pose})")]] std::optional<Hit> find_touching(
-      Device& device, const Object& object, const Pose& pose, const CollisionRequest& request = {},
-      const CollisionGroups& groups = {}) const {
-    return find_contact(device, {object, pose, groups}, request);
-  }
-  [[deprecated("use for_each_contact()")]] void for_each_touching(Device& device, const PairSink& take,
-                                                                  const CollisionRequest& request = {}) const {
-    for_each_contact(device, take, request);
-  }
-  [[deprecated("use for_each_contact()")]] void for_each_touching(Device& device, Id id, const HitSink& take,
-                                                                  const CollisionRequest& request = {}) const {
-    for_each_contact(device, id, take, request);
-  }
-  [[deprecated("use for_each_contact(device, {object, pose}, take)")]] void for_each_touching(
-      Device& device, const Object& object, const Pose& pose, const HitSink& take, const CollisionRequest& request = {},
-      const CollisionGroups& groups = {}) const {
-    for_each_contact(device, {object, pose, groups}, take, request);
-  }
-
  private:
   /// What decides whether a pair is wanted: a few bytes an object, since every query reads those of all pairs.
   struct Label {

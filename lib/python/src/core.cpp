@@ -527,12 +527,6 @@ nb::object to_rows(const std::vector<cchip::Vec3d>& points) {
   return nb::cast(owned<double>(std::move(rows), {points.size(), 3}));
 }
 
-/// \throws nb::python_error if the user has made such warnings errors
-void old_name(const char* name, const char* use) {
-  const std::string text = std::string(name) + " is deprecated: use " + use;
-  if (PyErr_WarnEx(PyExc_DeprecationWarning, text.c_str(), 1) != 0) throw nb::python_error();
-}
-
 nb::dict to_dict(const cchip::CollisionStats& stats) {
   nb::dict d;
   d["steps"] = stats.steps;
@@ -1489,13 +1483,9 @@ void set_scene_state(PyScene& self, const nb::tuple& state) {
 }
 
 /// contacts() and find_contact() of a scene: all pairs, those of one object, those of an object outside.
-/// \param instead of an old name: what to use; else null
 template <class Call>
 void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, const std::string& found,
-                 const std::string& doc, const char* instead = nullptr) {
-  const auto warn = [name, instead] {
-    if (instead != nullptr) old_name(name, instead);
-  };
+                 const std::string& doc) {
   const std::string keywords =
       ", *, contacts: str = 'first', relation: bool = False, least: str = 'touching', "
       "max_contacts: int | None = None, device: Device | None = None, certificate: bool = False, within: float = 0";
@@ -1506,9 +1496,8 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
   };
   type.def(
       name,
-      [call, warn](PyScene& self, const std::string& contacts, bool relation, const std::string& least,
-                   std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within) {
-        warn();
+      [call](PyScene& self, const std::string& contacts, bool relation, const std::string& least,
+             std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within) {
         const CollisionRequest request = to_request(contacts, relation, least, max_contacts, certificate, within);
         const auto answers = self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), request); });
         return to_object(answers, self.scene());
@@ -1518,9 +1507,8 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
       nb::sig(sig("", "tuple[int, int, Result]").c_str()), doc.c_str());
   type.def(
       name,
-      [call, warn](PyScene& self, Scene::Id id, const std::string& contacts, bool relation, const std::string& least,
-                   std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within) {
-        warn();
+      [call](PyScene& self, Scene::Id id, const std::string& contacts, bool relation, const std::string& least,
+             std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within) {
         const CollisionRequest request = to_request(contacts, relation, least, max_contacts, certificate, within);
         const auto answers = self.ask([&](const Scene& s) { return call(s, *DeviceUse(device), id, request); });
         return to_object(answers, self.scene(), asked_for(self.scene(), id));
@@ -1531,10 +1519,9 @@ void def_queries(nb::class_<PyScene>& type, const char* name, const Call& call, 
       "The same for one object of the scene, which is A in the results; tuples (id, result).");
   type.def(
       name,
-      [call, warn](PyScene& self, Outside mesh, nb::handle pose, std::uint64_t groups, std::uint64_t mask,
-                   const std::string& contacts, bool relation, const std::string& least,
-                   std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within) {
-        warn();
+      [call](PyScene& self, Outside mesh, nb::handle pose, std::uint64_t groups, std::uint64_t mask,
+             const std::string& contacts, bool relation, const std::string& least,
+             std::optional<std::size_t> max_contacts, Device* device, bool certificate, double within) {
         const CollisionRequest request = to_request(contacts, relation, least, max_contacts, certificate, within);
         const Object object = to_object(mesh.value, "object");
         const Pose place = one_pose(pose, "pose");
@@ -1777,13 +1764,6 @@ Returns the claim, as the first of the lines has it. Raises collisionchip.check.
           "stats", [](const Result& x) { return to_dict(x.stats); }, nb::sig("def stats(self) -> dict[str, int]"),
           "What the query cost (docs/cpp/collide.md).")
       .def_prop_ro(
-          "counts",
-          [](const Result& x) {
-            old_name("Result.counts", "stats");
-            return to_dict(x.stats);
-          },
-          nb::sig("def counts(self) -> dict[str, int]"), "Deprecated: use stats.")
-      .def_prop_ro(
           "certificate",
           [](const Result& x) -> std::optional<Proof> {
             if (!x.certificate) return std::nullopt;
@@ -1918,13 +1898,6 @@ Raises OSError: the file cannot be opened. Raises ValueError: it holds no points
       .def_prop_ro(
           "stats", [](const CloudResult& x) { return to_dict(x.stats); }, nb::sig("def stats(self) -> dict[str, int]"),
           "What the query cost (docs/cpp/points.md).")
-      .def_prop_ro(
-          "counts",
-          [](const CloudResult& x) {
-            old_name("CloudResult.counts", "stats");
-            return to_dict(x.stats);
-          },
-          nb::sig("def counts(self) -> dict[str, int]"), "Deprecated: use stats.")
       .def("__bool__", [](const CloudResult& x) { return x.hit; })
       .def("__repr__", [](const CloudResult& x) {
         return "<collisionchip.CloudResult: " + std::string(x.hit ? "hit" : "no hit") + ", " +
@@ -2237,6 +2210,4 @@ The other parameters are those of collide(); the device is by default the CPU wi
 the filter.)");
   def_queries(scene, "find_contact", find_contact, "@ | None",
               "One of the tuples that contacts() would return, any of them, or None if there is no contact.");
-  def_queries(scene, "touching", contacts, "list[@]", "Deprecated: use contacts().", "contacts()");
-  def_queries(scene, "find_touching", find_contact, "@ | None", "Deprecated: use find_contact().", "find_contact()");
 }

@@ -444,11 +444,6 @@ def test_all_stats():
     assert {"steps", "box_tests", "pairs", "open", "clocks", "fallbacks", "swaps", "swap_clocks"} == set(stats)
 
 
-def test_old_names():
-    with pytest.warns(DeprecationWarning, match="use stats"):
-        assert collide(CUBE, None, CUBE, None).counts["pairs"] > 0
-
-
 @pytest.mark.skipif(not os.path.isdir("/proc/self/task"), reason="counts threads as Linux shows them")
 def test_threads_share_the_device_of_all_cores():
     program = """

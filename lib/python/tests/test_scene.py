@@ -43,14 +43,6 @@ def test_a_scene_answers_as_all_pairs_in_order():
     assert 7 not in scene and 8 in scene and scene.add(CUBE) == 41
 
 
-def test_old_names():
-    scene, _ = row_of_cubes(2)
-    with pytest.warns(DeprecationWarning, match=r"use contacts\(\)"):
-        assert [(a, b) for a, b, _ in scene.touching()] == [(1, 2)]
-    with pytest.warns(DeprecationWarning, match=r"use find_contact\(\)"):
-        assert scene.find_touching(1)[0] == 2
-
-
 def test_poses_and_objects():
     scene, ids = row_of_cubes(3)
     assert [(a, b) for a, b, _ in scene.contacts()] == [(1, 2), (2, 3)]
