@@ -31,25 +31,7 @@ def make_vectors(kind, path, pairs, seed=SEED):
     subprocess.run([os.environ["PAIR_VECTORS"], kind, path, str(pairs), str(seed)], check=True)
 
 
-def listed(name):
-    return {f"rtl/{line.strip()}" for line in (ROOT / name).read_text().splitlines() if line.strip().endswith(".v")}
-
-
-def fileset(name):
-    """Files of a file set, as written."""
-    text = re.search(rf"^  {name}:\n    files:\n(.*?)(?=^    \w|^$)", CORE, re.M | re.S).group(1)
-    return re.findall(r"^      - ([\w./]+)", text, re.M)
-
-
 class Files(unittest.TestCase):
-    def test_file_sets_are_the_file_lists(self):
-        rtl = {name for name in fileset("rtl") if name.endswith(".v")}
-        self.assertEqual(rtl | set(fileset("leaf")), listed("rtl/cchip.f"), "update collisionchip.core: rtl/cchip.f changed")
-        self.assertEqual(rtl | set(fileset("leaf_ecp5")), listed("rtl/cchip_ecp5.f"),
-                         "update collisionchip.core: rtl/cchip_ecp5.f changed")
-        headers = {name for name in fileset("rtl") if name.endswith(".vh")}
-        self.assertEqual(headers, {f"rtl/include/{p.name}" for p in (ROOT / "rtl/include").glob("*.vh")})
-
     def test_all_files_exist(self):
         names = re.findall(r"^      - ([\w./]+)", CORE, re.M)
         self.assertGreater(len(names), 20)
