@@ -20,13 +20,13 @@ QUAD_LEAVES ?= build/leaves/BLEND/Suzanne_248.blend.obj
 # more options of campaign-leaves, as --eta 2
 LEAF_ARGS ?=
 
-.PHONY: list docs-layout peers robots sim-reconfig sim-traverse wave-of formal-all mutants test-gates test-debug test-asan test-arm64 cross-windows fuzz-tools fuzz campaign-build campaign campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-cluster campaign-chip campaign-chip-faults campaign-chip-swaps picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot coverage coverage-bins coverage-cpp bench-certificate bench-scene sdist test-sdist bench-python test-dask test-ply bench-chip fpga fpga-sweep fpga-quick asic asic-quick tidy deb
+.PHONY: list release docs-layout peers robots sim-reconfig sim-traverse wave-of formal-all mutants test-gates test-debug test-asan test-arm64 cross-windows fuzz-tools fuzz campaign-build campaign campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-cluster campaign-chip campaign-chip-faults campaign-chip-swaps picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot coverage coverage-bins coverage-cpp bench-certificate bench-scene sdist test-sdist bench-python test-dask test-ply bench-chip fpga fpga-sweep fpga-quick asic asic-quick tidy deb
 
 define RUN_GROUPS
 Try it
   sim-reconfig/18_s sim-traverse table1/1_s table1-plot picture
 Use the library
-  deb sdist
+  deb sdist release
 Read
   docs-layout/3_min
 Check a change
@@ -298,6 +298,18 @@ sdist: $(PYTHON_TOOLS)/requirements.txt ## pack the sources of the Python packag
 	rm -f dist/*.tar.gz
 	$(PYTHON_TOOLS)/bin/python -m build --sdist > /dev/null
 	@ls dist/*.tar.gz
+
+VERSION := $(word 3,$(shell grep -m 1 '^project.collisionchip VERSION' CMakeLists.txt))
+# the prerequisites one after the other: each clears its own files in dist
+release: ## source, Python packages and exported Verilog of this version in dist, with their SHA-256; only what is committed
+	@test -z "$$(git status --porcelain)" || { echo "release: not all is committed: git status" >&2; exit 1; }
+	$(MAKE) --no-print-directory -f scripts/run.mk sdist
+	$(MAKE) --no-print-directory -f scripts/run.mk wheel
+	$(MAKE) --no-print-directory -f scripts/run.mk export
+	git archive --format=tar.gz --prefix=collisionchip-$(VERSION)/ --output=dist/collisionchip-$(VERSION)-source.tar.gz HEAD
+	tar -C build -czf dist/collisionchip-$(VERSION)-verilog.tar.gz export
+	cd dist && sha256sum collisionchip-* > SHA256SUMS && cat SHA256SUMS
+	@echo "tag: v$(VERSION)"
 
 test-sdist: sdist ## build and install the packed sources in a fresh environment and ask a query
 	python3 -m venv --clear build/python/sdist
