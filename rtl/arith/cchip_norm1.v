@@ -6,12 +6,11 @@
 //   numbers      v two's complement, x in the low bits; q unsigned, exact
 //   reset        none (data only)
 module cchip_norm1 #(
-    // width of a component, bit, >= 2
-    parameter integer V_W = 17
+    parameter integer V_W = 17  // width of a component (bit); legal: >= 2
 ) (
-    input  wire             clk,
-    input  wire [3*V_W-1:0] v,
-    output wire [    V_W:0] q
+    input  wire             clk,  // clock, rising edge
+    input  wire [3*V_W-1:0] v,    // vector, x in the low bits, components signed
+    output wire [    V_W:0] q     // norm, unsigned
 );
 
   // ---- clock 1: bits inverted if negative: |v| of v >= 0, |v| - 1 of v < 0

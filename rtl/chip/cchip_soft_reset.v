@@ -10,15 +10,16 @@
 //   cuts         every path: each output is a flip-flop
 //   reset        ends a soft reset, without done
 module cchip_soft_reset #(
-    // clocks, more than a request needs from its queue to the bus: 2..256
+    // quiet clocks before the reset ends; more than a request needs from its queue to the bus;
+    // legal: 2..256
     parameter integer CLOCKS = 16
 ) (
-    input  wire clk,
-    input  wire rst,
-    input  wire request,
+    input  wire clk,          // clock, rising edge
+    input  wire rst,          // synchronous reset, active high
+    input  wire request,      // 1 for a clock: reset the core
     input  wire outstanding,  // a response is outstanding
-    output wire resetting,
-    output wire done
+    output wire resetting,    // reset of the core
+    output wire done          // the reset has ended; 1 for a clock
 );
 
   localparam integer COUNT_W = $clog2(CLOCKS);

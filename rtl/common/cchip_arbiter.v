@@ -9,13 +9,12 @@
 //   cuts         nothing
 //   reset        the search begins at source 0
 module cchip_arbiter #(
-    // sources, 1..32
-    parameter integer N = 4
+    parameter integer N = 4  // sources; legal: 1..32
 ) (
-    input  wire         clk,
-    input  wire         rst,
-    input  wire [N-1:0] request,
-    output wire [N-1:0] grant,
+    input  wire         clk,      // clock, rising edge
+    input  wire         rst,      // synchronous reset, active high
+    input  wire [N-1:0] request,  // bit i: source i asks
+    output wire [N-1:0] grant,    // one-hot: the source whose turn it is; 0 without a request
     input  wire         take      // the source of grant, if any, is served on this clock
 );
 

@@ -8,14 +8,13 @@
 //   cuts         every path: crc is inverted flip-flops
 //   reset        clear = 1: crc is that of no words, 0; it wins over valid
 module cchip_crc32 #(
-    // width of a word, bit, a multiple of 8
-    parameter integer DATA_W = 8
+    parameter integer DATA_W = 8  // width of a word (bit); legal: 8, 16, ...
 ) (
-    input  wire              clk,
-    input  wire              clear,
-    input  wire              valid,
-    input  wire [DATA_W-1:0] data,
-    output wire [      31:0] crc
+    input  wire              clk,    // clock, rising edge
+    input  wire              clear,  // 1: no words yet
+    input  wire              valid,  // data is the next word
+    input  wire [DATA_W-1:0] data,   // word, first byte lowest
+    output wire [      31:0] crc     // CRC-32 of the words since clear
 );
 
   `CCHIP_REFUSE(DATA_W < 8 || DATA_W % 8 != 0, cchip_error_crc32_DATA_W_must_be_a_multiple_of_8)

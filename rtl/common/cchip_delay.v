@@ -9,19 +9,17 @@
 //   MEMORY = 1   (DEPTH >= 3, RESET = 0) keeps the values in a small memory with a circulating
 //                pointer instead of flip-flops
 module cchip_delay #(
-    // width of the value, bit
-    parameter integer WIDTH = 1,
-    // delay, clocks, >= 0
-    parameter integer DEPTH = 1,
-    // 1: rst clears all stages; 0: it does not
-    parameter integer RESET = 0,
-    // 1: distributed memory instead of a chain of registers
+    parameter integer WIDTH = 1,  // width of the value (bit); legal: >= 1
+    parameter integer DEPTH = 1,  // delay; 0 is a wire (clock); legal: >= 0
+    parameter integer RESET = 0,  // 1: rst clears every stage; 0: it does not; legal: 0, 1
+    // 1: a small memory instead of a chain of registers; needs DEPTH >= 3 and RESET = 0; legal: 0,
+    // 1
     parameter integer MEMORY = 0
 ) (
-    input  wire             clk,
-    input  wire             rst,
-    input  wire [WIDTH-1:0] d,
-    output wire [WIDTH-1:0] q
+    input  wire             clk,  // clock, rising edge
+    input  wire             rst,  // synchronous reset, active high; used only with RESET = 1
+    input  wire [WIDTH-1:0] d,    // value in
+    output wire [WIDTH-1:0] q     // value DEPTH clocks later
 );
 
   `CCHIP_REFUSE(WIDTH < 1 || DEPTH < 0 || RESET < 0 || RESET > 1,

@@ -11,17 +11,17 @@
 //   cuts         every path
 //   reset        none; words never written hold any value
 module cchip_dual_ram #(
-    // width of a word, bit, >= 1
-    parameter integer WIDTH = 8,
-    // width of an address, bit, 3..16
-    parameter integer ADDR_W = 11
+    parameter integer WIDTH = 8,   // width of a word (bit); legal: >= 1
+    parameter integer ADDR_W = 11  // width of an address: 1 << ADDR_W words (bit); legal: 3..16
 ) (
-    input  wire              clk,
-    input  wire              write,
-    input  wire [ADDR_W-1:0] addr_a,
-    input  wire [ WIDTH-1:0] write_data,
+    input  wire              clk,          // clock, rising edge
+    input  wire              write,        // 1: write_data is stored at addr_a
+    input  wire [ADDR_W-1:0] addr_a,       // which word to write or to read
+    input  wire [ WIDTH-1:0] write_data,   // what to write
+    // the word at addr_a of 2 clocks before; any value if it was written on that clock
     output wire [ WIDTH-1:0] read_data_a,
-    input  wire [ADDR_W-1:0] addr_b,
+    input  wire [ADDR_W-1:0] addr_b,       // which word to read
+    // the word at addr_b of 2 clocks before; any value if it was written on that clock
     output wire [ WIDTH-1:0] read_data_b
 );
 

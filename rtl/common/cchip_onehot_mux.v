@@ -7,14 +7,12 @@
 //   latency      0 clocks: m_data follows select and s_data
 //   cuts         nothing
 module cchip_onehot_mux #(
-    // sources, 1..32
-    parameter integer N = 4,
-    // width of a word, bit, >= 1
-    parameter integer WIDTH = 8
+    parameter integer N = 4,     // sources; legal: 1..32
+    parameter integer WIDTH = 8  // width of a word (bit); legal: >= 1
 ) (
-    input  wire [      N-1:0] select,
+    input  wire [      N-1:0] select,  // one-hot: bit i selects word i; 0 selects none
     input  wire [N*WIDTH-1:0] s_data,  // word i in bits [WIDTH*i +: WIDTH]
-    output wire [  WIDTH-1:0] m_data
+    output wire [  WIDTH-1:0] m_data   // the selected word; 0 if none is
 );
 
   `CCHIP_REFUSE(N < 1 || N > 32 || WIDTH < 1,

@@ -9,20 +9,18 @@
 //   reset        all numbers are free; the first is lent from the 3rd clock on, then one per clock
 //   rules        back_valid only with a number that is lent
 module cchip_pool #(
-    // first number
-    parameter integer FIRST = 0,
-    // numbers, 1..256
-    parameter integer COUNT = 16,
-    // width of a number, bit
+    parameter integer FIRST = 0,   // first number; legal: >= 0
+    parameter integer COUNT = 16,  // how many (number); legal: 1..256
+    // width of a number (bit); legal: 1..30, wide enough for FIRST + COUNT - 1
     parameter integer WIDTH = 4
 ) (
-    input  wire             clk,
-    input  wire             rst,
-    output wire             m_valid,
-    input  wire             m_ready,
-    output wire [WIDTH-1:0] m_number,
-    input  wire             back_valid,
-    input  wire [WIDTH-1:0] back_number
+    input  wire             clk,         // clock, rising edge
+    input  wire             rst,         // synchronous reset, active high
+    output wire             m_valid,     // a number is free
+    input  wire             m_ready,     // it is lent
+    output wire [WIDTH-1:0] m_number,    // which
+    input  wire             back_valid,  // a number comes back
+    input  wire [WIDTH-1:0] back_number  // which; it was lent
 );
 
   localparam [31:0] BEGIN = FIRST;

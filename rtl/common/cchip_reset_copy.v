@@ -11,9 +11,9 @@
 //   reset        none
 (* keep_hierarchy = "yes" *)
 module cchip_reset_copy (
-    input  wire clk,
-    input  wire rst,
-    output wire rst_copy
+    input  wire clk,      // clock, rising edge
+    input  wire rst,      // synchronous reset, active high
+    output wire rst_copy  // the reset, a clock later
 );
 
   reg rst_q;

@@ -10,13 +10,13 @@
 //   cuts         every path: roc is a flip-flop
 //   reset        rst counts as a configuration; so does power-up: roc is 1 for CYCLES clocks then
 module cchip_roc_generator #(
-    // length of the reset, clocks, 1..32
-    parameter integer CYCLES = 2
+    parameter integer CYCLES = 2  // length of the reset (clock); legal: 1..32
 ) (
-    input  wire clk,
-    input  wire rst,
+    input  wire clk,         // clock, rising edge
+    input  wire rst,         // synchronous reset, active high; counts as a configuration
+    // 1 on one clock, or on as many as one likes: a configuration has ended
     input  wire configured,
-    output wire roc
+    output wire roc          // reset of the module
 );
 
   `CCHIP_REFUSE(CYCLES < 1 || CYCLES > 32, cchip_error_ROC_CYCLES_must_be_1_to_32)

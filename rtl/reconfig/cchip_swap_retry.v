@@ -14,18 +14,20 @@
 //   cuts         every path: each output comes from flip-flops
 //   reset        nothing rests, level 0
 module cchip_swap_retry #(
-    // slots, 1..4
-    parameter integer SLOTS = 1,
-    // kinds of pairs, 3, or 4 with points: the modules are 0..KINDS
+    parameter integer SLOTS = 1,  // slots; legal: 1..4
+    // kinds of pairs, 4 with points against triangles; the modules are 0..KINDS; legal: 3, 4
     parameter integer KINDS = 3
 ) (
-    input  wire                            clk,
-    input  wire                            rst,
-    input  wire                            report_valid,  // one clock
+    input  wire                            clk,                  // clock, rising edge
+    input  wire                            rst,                  // synchronous reset, active high
+    input  wire                            report_valid,  // a report of the controller, one clock
+    // the report: record SWAP_REPORT, docs/hardware/definitions.md
     input  wire [`CCHIP_SWAP_REPORT_W-1:0] report_data,
-    // entries of cchip_bitstream_table
-    input  wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] valid,  // there is a bitstream
+    // there is a bitstream; entries as in cchip_bitstream_table
+    input  wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] valid,
+    // the entry must not be tried by itself
     output wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] resting,
+    // entries that rest after eight failures in a row or more
     output wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] hopeless
 );
 

@@ -8,19 +8,21 @@
 //   reset        none (data only)
 // Only the degenerate programme uses it: primitives on one line have no other separating axis.
 module cchip_box_compare #(
-    // width of a coordinate, bit
-    parameter integer COORD_W = 16,
-    // vertices of A and of B
-    parameter integer VERTS_A = 3,
-    parameter integer VERTS_B = 3
+    parameter integer COORD_W = 16,  // width of a coordinate (bit); legal: 4..20
+    parameter integer VERTS_A = 3,   // vertices of A (vertex); legal: 3, 4
+    parameter integer VERTS_B = 3    // vertices of B (vertex); legal: 3, 4
 ) (
-    input  wire                            clk,
-    input  wire [   3*VERTS_A*COORD_W-1:0] s_a,            // vertex 0 in the low bits, x lowest
-    input  wire [   3*VERTS_B*COORD_W-1:0] s_b,
-    input  wire [                     1:0] s_component,    // 0 x, 1 y, 2 z; 3 like 0
-    input  wire [`CCHIP_ERROR_SHIFT_W-1:0] s_error_shift,  // eta <= 2^s_error_shift
+    input  wire                            clk,            // clock, rising edge
+    // A, vertex 0 in the low bits; of a vertex x lowest
+    input  wire [   3*VERTS_A*COORD_W-1:0] s_a,
+    input  wire [   3*VERTS_B*COORD_W-1:0] s_b,            // B likewise
+    input  wire [                     1:0] s_component,    // 0 x, 1 y, 2 z; 3 is taken as 0
+    // E = 2^s_error_shift; eta <= 2^s_error_shift
+    input  wire [`CCHIP_ERROR_SHIFT_W-1:0] s_error_shift,
+    // the boxes have no common value of this component
     output wire                            m_separated,
-    output wire                            m_certain_gap   // the gap exceeds 2^s_error_shift
+    // the gap between them exceeds E, so the unrounded boxes are disjoint too
+    output wire                            m_certain_gap
 );
 
   reg m_separated_q;

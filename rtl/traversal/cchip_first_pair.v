@@ -6,9 +6,9 @@
 //   latency      0 clocks: all outputs follow pairs
 //   cuts         nothing
 module cchip_first_pair (
-    input  wire [15:0] pairs,
-    output wire [ 3:0] first,   // any if pairs is 0
-    output wire [15:0] rest,    // pairs without the first
+    input  wire [15:0] pairs,   // bit 4 i + j: child i of A with child j of B
+    output wire [ 3:0] first,   // number of the lowest one; any if pairs is 0
+    output wire [15:0] rest,    // pairs without it
     output wire        several  // there are two or more
 );
 
