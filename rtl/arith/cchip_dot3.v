@@ -6,6 +6,16 @@
 //   numbers      two's complement, x in the low bits; q wraps modulo 2^(A_W+B_W): exact whenever
 //                the true value fits, as 3x3 determinants do (CCHIP_PROJ_W)
 //   reset        none (data only)
+//   about        Dot product of two vectors of three components: one projector of macro stage 3
+//                (paper, equation 2: "three multipliers and two adders each").
+//   parameters   Illegal values stop elaboration in cchip_mul_wide or cchip_delay.
+//   numbers      In general a sum of three such products needs up to two bits more. Here it does
+//                not: in the pipeline every result is a 3x3 determinant, and those fit (derivation
+//                (docs/develop/architecture.md#widths)). Because additions are modular, wrapped
+//                intermediate sums would not matter even if they occurred.
+//   why          One adder between two registers. The optional registers are placed by hand where
+//                they help: before the multipliers, behind the leaves, and behind the sum, where
+//                they only fill up to the wanted latency.
 module cchip_dot3 #(
     parameter integer A_W = 17,          // width of a component of a (bit); legal: 2..52
     parameter integer B_W = 34,          // width of a component of b (bit); legal: 2..52

@@ -5,6 +5,14 @@
 //   throughput   one result per clock, never stalls
 //   numbers      v two's complement, x in the low bits; q unsigned, exact
 //   reset        none (data only)
+//   about        The error bounds need this norm of edges, of point differences and of the axis.
+//   numbers      Exact: an absolute value is at most 2^(V_W-1), which V_W unsigned bits hold, and
+//                three of them are below 2^(V_W+1).
+//   why          The 1-norm needs adders only. Euclid's norm would need multipliers, and the bounds
+//                that the certainty uses are bounds in the 1-norm anyway. An absolute value would
+//                be an addition before the sum. Here the first clock takes the ones' complement of
+//                what is negative, which is |v| - 1, and the missing ones go as carries into the
+//                sums of the second clock: one addition per clock.
 module cchip_norm1 #(
     parameter integer V_W = 17  // width of a component (bit); legal: >= 2
 ) (

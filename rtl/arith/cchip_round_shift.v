@@ -9,6 +9,11 @@
 //   lost         d is no multiple of 2^(BASE + s): q is not exact
 //   cuts         every path
 //   reset        none (data only)
+//   numbers      A value halfway between two others becomes the greater one.
+//   inside       Two barrel shifters that keep one bit below the point, and a flag for what falls
+//                off behind it; the last clock adds that bit.
+//   why          floor(x + 1/2) is the truncated value and the highest bit that was cut, so no
+//                constant that depends on s has to be added before the shift.
 module cchip_round_shift #(
     parameter integer D_W = 56,        // width of d (bit); legal: 2..64
     parameter integer BASE = 29,       // bits that are cut for every s; legal: 0..D_W - 1

@@ -9,6 +9,12 @@
 //                as model::sort_children names them
 //   cuts         every path
 //   reset        none
+//   timing       A child of A on every clock. m_a comes one clock, m_row 7 clocks after s_a.
+//   numbers      Planes as cchip_bv_compare takes them. The best is the child pair that waits with
+//                the greatest key, the first of equals.
+//   inside       cchip_bv_compare, registers, a comparison of two keys.
+//   why          Cells in a row need no multiplexer in front of the comparators, and what they find
+//                for a child of A is put together on the way.
 module cchip_bv_cell (
     input  wire         clk,    // clock, rising edge
     input  wire         load,   // b is held from the next clock on

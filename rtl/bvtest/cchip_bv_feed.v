@@ -14,6 +14,17 @@
 //   cuts         every path but s_valid to s_soon, and the context to row_context0, which a block
 //                RAM takes
 //   reset        drops the node pairs
+//   ports        A number in a name: clocks after the first one of its node pair; what belongs to a
+//                child comes that much later again as the child has a position, 0..3.
+//   timing       A node pair of at most three children on each side that count takes three clocks,
+//                any other four; s_ready, a register, is high on the last one. Lines are read on
+//                all of these clocks.
+//   inside       Two cchip_block_ram of 16 node pairs, written four words at once, for the children
+//                of A and of B; one for tags. A chain of registers carries the first and the last
+//                clock of each node pair.
+//   why          cchip_bv_offset needs eight clocks before the lanes can start. Children that wait
+//                in block RAM cost no flip-flops, and since its port for writing is four words
+//                wide, no multiplexers.
 module cchip_bv_feed #(
     // queries at work, each with a pose (query); legal: 2, 4, 8, 16
     parameter integer QUERIES = 16,

@@ -10,6 +10,11 @@
 //   cuts         every path
 //   reset        none
 // Bit for bit model::planes_of_b (docs/hardware/image.md, "Box test").
+//   numbers      The widths hold every sum. Cuts count up to scale 2.
+//   inside       Shifters for the six corners, 4 + 2 adders a face diagonal, 2 + 2 a cube diagonal.
+//                No multiplier.
+//   why          The slack is added to the corners: a sum over two or three of them then has two or
+//                three times the slack, as it must.
 module cchip_bv_lane_b (
     input  wire         clk,     // clock, rising edge
     // ---- clock 0

@@ -12,6 +12,18 @@
 //   cuts         every path
 //   reset        none: a start that is not used does no harm
 // Bit for bit model::grid_of (docs/hardware/image.md, "Box test").
+//   timing       Clocks count from start. Origins stay for the three clocks from start on, in which
+//                the rows of M and t come one after the other; steps, shift and epsilon come with
+//                start. Each output stays from its clock on until that of the next node pair.
+//                cchip_bv_pose gives the rows.
+//   numbers      The shifts are split. With s the lesser of the grid's step and 7, M o_A is shifted
+//                down and t - o_B up to 2^(s - 31), and their sum down to the grid. Floors of
+//                floors are the floor.
+//   inside       Three cchip_mul18, one axis after the other. An entry of M that is 1 is treated as
+//                in cchip_bv_lane_a.
+//   why          The lanes take a child on every clock, so a node pair has four clocks and one set
+//                of multipliers serves the three axes. Shifted as it is, no sum is wider than 39
+//                bits for any units of the two objects.
 module cchip_bv_offset (
     input  wire         clk,       // clock, rising edge
     input  wire         start,     // a node pair; at the earliest 3 clocks after the last one

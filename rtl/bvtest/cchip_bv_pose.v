@@ -10,6 +10,14 @@
 //                the 13 directions side by side for cchip_bv_lane_a
 //   cuts         every path
 //   reset        drops the pose at work, keeps those in memory
+//   timing       A pose every 13 clocks; m_pose_valid 21 clocks after it was taken. What is read
+//                while it is written is any value.
+//   numbers      Those of cchip_pose_setup.
+//   inside       cchip_pose_setup and cchip_block_ram: 97 bits for each row, 171 for M, 51 for each
+//                direction.
+//   why          cchip_bv_offset works on one axis after the other, so it gets the rows so: no
+//                multiplexers. cchip_bv_lane_a needs all 13 directions at once, at two clocks; the
+//                memories are read at these clocks, and no register waits.
 module cchip_bv_pose #(
     parameter integer QUERIES = 16  // queries at work, each with a pose (query); legal: 2, 4, 8, 16
 ) (

@@ -11,6 +11,16 @@
 //   cuts         every path
 //   reset        drops the query at work
 // Bit for bit model::set_up (docs/hardware/image.md).
+//   about        M rounded, and how each direction of B splits into directions of A.
+//   timing       A query every 13 clocks. pose_m, pose_t and epsilon from the clock after the query
+//                was taken to the one on which s_ready is 1 again; the first direction 7 clocks
+//                after it, then one on every clock. Nothing waits for a receiver.
+//   numbers      Of equal magnitudes the first one counts as the greater. Queries as a descriptor
+//                may hold them: |m| below 2, b + c at most 2 + 2^-5 (docs/hardware/image.md).
+//   inside       Three sums of three, three comparisons of two magnitudes, selection.
+//   why          The face diagonal is that of the two greater components with their signs, the cube
+//                diagonal that of all three. So the split needs no search, and nothing of it is the
+//                host's work.
 module cchip_pose_setup (
     input  wire         clk,          // clock, rising edge
     input  wire         rst,          // synchronous reset, active high

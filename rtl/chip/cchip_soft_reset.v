@@ -9,6 +9,13 @@
 //   latency      1 clock from request to resetting; done is 1 on the first clock after it
 //   cuts         every path: each output is a flip-flop
 //   reset        ends a soft reset, without done
+//   rules        The bus masters must not be reset: reads that they hold in their queues go to
+//                memory, and their answers reach clients that are in reset and drop them. If memory
+//                never answers, resetting stays 1: the module has no time-out, since a core that is
+//                let go could take a late answer for its own.
+//   inside       One flip-flop and a counter of quiet clocks.
+//   test         tests/unit/test_cchip_soft_reset.cpp: a model on every clock, for several CLOCKS.
+//                Assertion in the RTL: a_done.
 module cchip_soft_reset #(
     // quiet clocks before the reset ends; more than a request needs from its queue to the bus;
     // legal: 2..256

@@ -8,6 +8,11 @@
 //   latency      0 clocks: grant follows request
 //   cuts         nothing
 //   reset        the search begins at source 0
+//   about        Every choice between equals in this project is one of these.
+//   timing       A request may be taken back.
+//   why          A mask of the sources behind the last one, a search below the mask and one without
+//                it, side by side. The depth grows with the logarithm of N; that of a token that
+//                runs from source to source grows with N.
 module cchip_arbiter #(
     parameter integer N = 4  // sources; legal: 1..32
 ) (

@@ -8,6 +8,11 @@
 //   reset        count 0, some 0, room 1
 //   rules        up only while room = 1, down only while some = 1; both on one clock leave the
 //                count as it is
+//   timing       All outputs are flip-flops and change one clock after up or down; both on one
+//                clock change nothing.
+//   why          Who gives out credit needs "is there room?" on the next clock, not a comparison
+//                behind a sum. The comparisons use registers only; up and down, which come late,
+//                select among their results.
 module cchip_count #(
     parameter integer LIMIT = 16  // most things inside; legal: 1..65535
 ) (

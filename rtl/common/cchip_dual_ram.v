@@ -10,6 +10,12 @@
 //   device       rtl/cchip_ecp5.f takes the block itself, vendor/ecp5/cchip_dual_ram.v
 //   cuts         every path
 //   reset        none; words never written hold any value
+//   timing       The outputs are flip-flops. No reset: words are undefined until written.
+//   why          A block of any FPGA has two ports, each with its own address; a memory with two
+//                readers beside a writer, cchip_block_ram twice, takes two blocks for each bit.
+//                Where a write may cost a read, as a line that arrives in cchip_cache, one block is
+//                enough. On ECP5 a leaf takes the blocks themselves, for the reason given at
+//                cchip_block_ram: 18 bits a block up to 1,024 words, 9 bits with 2,048.
 module cchip_dual_ram #(
     parameter integer WIDTH = 8,   // width of a word (bit); legal: >= 1
     parameter integer ADDR_W = 11  // width of an address: 1 << ADDR_W words (bit); legal: 3..16

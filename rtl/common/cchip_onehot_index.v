@@ -6,6 +6,10 @@
 //                1 at once
 //   latency      0 clocks: index follows select
 //   cuts         nothing
+//   timing       Combinational.
+//   numbers      With two bits of select at 1 the output is the OR of both numbers.
+//   why          Each bit of the number is the OR of half of the vector: no priority, so no carry
+//                chain.
 module cchip_onehot_index #(
     parameter integer N = 4,     // bits of the vector; legal: 1..64
     parameter integer WIDTH = 2  // width of the number (bit); legal: 1..30, 2^WIDTH >= N

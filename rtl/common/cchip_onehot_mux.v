@@ -6,6 +6,15 @@
 //                must not be 1 at once
 //   latency      0 clocks: m_data follows select and s_data
 //   cuts         nothing
+//   about        The word of the source that a one-hot vector selects, as an AND-OR tree: behind
+//                every cchip_arbiter whose grant chooses data.
+//   timing       Combinational.
+//   numbers      With two bits of select at 1 the output is the OR of both words: the module does
+//                not check it, because the vectors come from modules that assert it
+//                (cchip_arbiter).
+//   why          A multiplexer with a number as its select input first decodes the number. The
+//                select inputs of this project come from arbiters and registers that are one-hot
+//                already, so two levels of gates per bit are enough.
 module cchip_onehot_mux #(
     parameter integer N = 4,     // sources; legal: 1..32
     parameter integer WIDTH = 8  // width of a word (bit); legal: >= 1

@@ -8,6 +8,12 @@
 //   cuts         every path: each output is a flip-flop
 //   reset        all numbers are free; the first is lent from the 3rd clock on, then one per clock
 //   rules        back_valid only with a number that is lent
+//   timing       A number that comes back to an empty pool is offered 2 clocks later. After reset
+//                the numbers are put into the queue, one on each clock on which none comes back;
+//                the first is offered from the third clock on.
+//   why          A queue takes the place of a mask and a search for its lowest bit. So every output
+//                is a flip-flop at any size. A number rests as long as possible, so a response that
+//                is still outstanding for its last user has time to arrive.
 module cchip_pool #(
     parameter integer FIRST = 0,   // first number; legal: >= 0
     parameter integer COUNT = 16,  // how many (number); legal: 1..256

@@ -9,6 +9,14 @@
 //                m_ready
 //   reset        empty; s_ready = 0 while rst is 1 and one clock longer
 //   errors       none. A source may take an offer back: what was not accepted does not appear.
+//   about        It collects the answers of the slots and the pairs that are left open in
+//                cchip_dispatcher, and the requests of the clients of cchip_axi_read. The turns are
+//                those of cchip_arbiter.
+//   numbers      A source may take an offer back, as a slot does that is decoupled by force: what
+//                was not accepted does not appear.
+//   why          The choice starts from a one-hot register of the last source: a token goes round
+//                from there to the first offer. For two or three sources that is two levels of
+//                logic; a subtraction that finds it would bring a carry chain.
 module cchip_stream_merge #(
     parameter integer SOURCES = 3,  // streams; legal: 1..8
     parameter integer WIDTH = 36    // width of the payload (bit); legal: >= 1

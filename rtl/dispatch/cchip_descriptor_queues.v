@@ -12,6 +12,17 @@
 //   cuts         every path but s_kind to s_ready and s_place
 //   reset        empty
 //   a place is written again one clock after its pop at the earliest
+//   about        What the descriptors mean, the queues do not know.
+//   timing       A push is seen by some one clock later. m_place stays until one clock after the
+//                next look, m_data no longer than until three clocks after the pop: then its place
+//                may be written again. pop comes one clock after its look at the earliest. A place
+//                is written again one clock after its pop at the earliest: a module that reads
+//                something else at that place (the operand memory) begins on the clock of pop.
+//   numbers      A place is {kind, pointer}, CCHIP_KIND_BITS(KINDS) + $clog2(DEPTH) bits: two for
+//                the kind, three with four kinds.
+//   why          Descriptors are narrow, so one block RAM holds the queues of all kinds; a FIFO for
+//                each kind would take a block RAM each. With a queue for kind 0, pairs that no slot
+//                can test need no path of their own.
 module cchip_descriptor_queues #(
     parameter integer WIDTH = `CCHIP_DESCRIPTOR_W,  // width of a descriptor (bit); legal: 1..80
     parameter integer KINDS = 3,                    // kinds of pairs; legal: 1..3

@@ -16,6 +16,16 @@
 //                m_last; m_kind and m_taker are those of the pair until the next m_first
 //   cuts         every path: each output comes from flip-flops
 //   reset        nothing is dispatched
+//   about        It knows nothing of pairs but their kind, and nothing of slots but that they have
+//                room and serve a kind.
+//   timing       A launch every 3 clocks, after a kind with quads every 4. some and room must show
+//                a launch on the next clock; a change of serves may still be followed by launches
+//                for 5 clocks.
+//   numbers      Kind 0 is the illegal one; kinds 2 and 3 have four vertices.
+//   why          A pair needs three clocks on its way into a slot, so there is time to choose in
+//                steps of two levels of logic. The kind is chosen ahead of time, among those that
+//                were possible a clock or two ago; then its takers, with what is true now. If the
+//                choice turns out to be out of date, the turn goes to the next kind.
 module cchip_dispatch_sequencer #(
     // slots, and the one that answers pairs that no slot can test (taker); legal: 2..5
     parameter integer TAKERS = 2,

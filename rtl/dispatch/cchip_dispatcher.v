@@ -16,6 +16,14 @@
 //   fair         kinds are served in turn, and so are slots and answers
 //   cuts         every path: each output comes from flip-flops
 //   reset        no pair inside any slot, no answer
+//   timing       A lone pair: 6 clocks from some to its first vertex, 6 from a result to its
+//                answer.
+//   numbers      Module m serves the kinds 1..m, the test of points (4) kind 4 alone
+//                (CCHIP_RM_SERVES). Pairs of kind 0 and of kinds without a provider go to a taker
+//                of their own that answers at once, as open.
+//   why          A pair leaves its queue only when a slot with credit takes it, and its operands
+//                are at hand by then. So the way to a slot has a fixed length, valid is never
+//                formed from ready, and a swap cannot strand a pair in between.
 module cchip_dispatcher #(
     parameter integer SLOTS = 2,   // slots; legal: 1..4
     parameter integer KINDS = 3,   // kinds of pairs; legal: 1..3

@@ -17,6 +17,18 @@
 //                one per clock; then decoupled rises. It falls one clock after decouple
 //   cuts         every path: each output is a flip-flop
 //   reset        no pair inside, no answer; open for pairs after CREDIT + 2 clocks
+//   about        The pairs inside one slot: how many there may be, what their numbers mean, and
+//                what becomes of them.
+//   timing       After rst every number is made free: open for pairs after CREDIT + 2 clocks. After
+//                decouple 16 clocks pass, then the numbers are walked through, one per clock, and
+//                16 clocks later decoupled rises; without pairs inside it rises after the first 16.
+//   numbers      A number is free, inside, or neither: its pair is answered, and the answer has not
+//                left. outstanding counts the second, credit the second and third.
+//   why          No ready runs to a slot or back: what was granted has room at every station, here
+//                too, so a slot drains regardless of the receiver. Whether a number is inside is
+//                told by two bits that differ, one written with the grant, one with the answer: two
+//                memories with one writer each. Giving up is the arrival of an open result for
+//                every number; those that are not inside are dropped like any garbage.
 module cchip_slot_ledger #(
     // most pairs between grant and answer; at most CONTEXTS of every module of the slot; legal:
     // 1..256

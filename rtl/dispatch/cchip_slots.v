@@ -14,6 +14,16 @@
 //   reset        rst: no pair; a slot whose rewriting was cut off stays decoupled until a good
 //                swap. core_rst: no pair; a slot that is decoupled keeps the reset that the swap
 //                gives it
+//   timing       6 clocks from some to the first vertex in a slot, that of the test, 6 from its
+//                result to m_result. Swaps: cchip_config_controller.
+//   rules        Every pair that is popped is answered exactly once, unless a reset comes in
+//                between. Without swaps a kind beyond every slot's module has no provider from the
+//                start, so its pairs come back open. core_rst discards the pairs alone: a swap in
+//                flight continues and ends well or not, and the slot serves what is loaded then.
+//   why          cchip_primtest_subsystem and cchip_chip_core share it, so what a swap does to
+//                pairs is written and tested once.
+//   test         With its two users: tests/unit/test_cchip_primtest_subsystem.cpp,
+//                tests/unit/test_cchip_chip_core.cpp, make campaign-swaps, make sim-chip.
 module cchip_slots #(
     parameter integer COORD_W = 16,  // width of a coordinate (bit); legal: 4..20
     // registers of the primitive test's stages (clock); legal: see cchip_pr_region

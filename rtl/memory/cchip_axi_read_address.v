@@ -14,6 +14,15 @@
 //   throughput   an address on every clock
 //   cuts         all but refuse_ready to refuse and m_axi_arready to issue
 //   reset        no request, no address
+//   rules        A client asks for a slot only when its last answer for it has come. An address
+//                once on offer stays until it is accepted, even if its read is given up. Until then
+//                nothing is issued behind it, and the request that waits is refused, because the
+//                abandoned address may carry the same ID.
+//   inside       A cchip_fifo for each client, a cchip_stream_merge, a register for the first
+//                request and one for the address on offer.
+//   why          Whether beats are outstanding under an ID is looked up once, as the request
+//                becomes the first one; what can change later is one bit, the abandoned address. So
+//                no comparison of IDs lies between m_axi_arready and the next address.
 module cchip_axi_read_address #(
     parameter integer CLIENTS = 3,      // clients; legal: 1..8
     parameter integer SLOTS = 16,  // lines that a client may be waiting for; legal: 2, 4, 8, 16, 32

@@ -9,6 +9,8 @@
 //                (cchip_timeout)
 //   cuts         every path: each output is a flip-flop
 //   reset        no read is late
+//   why          Two bits for each read instead of an age of 32 bits. A read is late up to a limit
+//                later than it could be; that is the price.
 module cchip_axi_read_late #(
     parameter integer IDS  = 48,  // reads that may be live; legal: 2..256
     parameter integer ID_W = 6    // width of the number of a read (bit); legal: IDS <= 2^ID_W

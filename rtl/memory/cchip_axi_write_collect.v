@@ -12,6 +12,10 @@
 //   throughput   a beat per clock
 //   cuts         every path: each output is a flip-flop
 //   reset        no write
+//   rules        For the clients those of cchip_axi_write. Beats leave in the order of their
+//                writes, possibly before m_write_valid.
+//   inside       A cchip_arbiter of the clients, a cchip_onehot_mux for their beats, and two
+//                cchip_fifo of 16 entries, for writes and for beats.
 module cchip_axi_write_collect #(
     parameter integer CLIENTS = 2,  // clients; legal: 1..4
     parameter integer DATA_W = 128  // width of the data bus (bit); legal: 64, 128, 256, 512

@@ -15,6 +15,12 @@
 //   cuts         the AXI side: its outputs are flip-flops, and m_axi_awready and m_axi_wready end
 //                in one
 //   reset        nothing is sent
+//   rules        If its client is answered with TIMEOUT before all beats have left, the rest of
+//                them is taken from the queue at once and goes out without strobes, since AXI wants
+//                the burst complete.
+//   inside       Two counts of beats, of those that leave the queue (take_*) and of those that are
+//                sent (send_*). They run together until the client has been answered. Two
+//                cchip_skid_buffer towards AXI.
 module cchip_axi_write_send #(
     parameter integer DATA_W = 128  // width of the data bus (bit); legal: 64, 128, 256, 512
 ) (

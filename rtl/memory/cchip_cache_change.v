@@ -9,6 +9,11 @@
 //   latency      1 clock from stage 6 to the write and to allocate
 //   cuts         entry_*, change_by and allocate*; grant, granted and walk_next follow stage 6
 //   reset        nothing is changed
+//   rules        A port whose change is not made looks its request up again.
+//   why          One writer keeps the two ports consistent: a lookup whose set it has changed is
+//                repeated, instead of a forwarding path for each stage. Whether any frame is
+//                granted does not depend on the turn, so the free slot leaves its pool early in the
+//                clock.
 module cchip_cache_change #(
     parameter integer MISSES = 32,  // slots of lines in flight; legal: 2, 4, 8, 16, 32
     parameter integer SET_W = 10,   // width of a set's number (bit); legal: >= 3

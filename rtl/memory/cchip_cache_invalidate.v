@@ -9,6 +9,9 @@
 //   latency      9 clocks for each set of the range, at most 2^SET_W of them
 //   cuts         every path
 //   reset        clears the entries, one set per clock: running = 0 meanwhile
+//   why          A set is looked up by a port as a request is, so the walk needs no port of its own
+//                into the entries. When it is over, no answer carries data from before the command:
+//                reads that were in flight have ended, and the pipeline has run empty.
 module cchip_cache_invalidate #(
     parameter integer SET_W = 10,   // width of a set's number (bit); legal: >= 3
     parameter integer LINE_W = 32,  // width of a line's number (bit); legal: SET_W + 1 .. 58

@@ -20,6 +20,18 @@
 //   own          of port 0 a fill, of port 1 a set to invalidate: each port leaves the outputs of
 //                the other kind at values that mean nothing
 //   reset        nothing inside
+//   timing       7 clocks from s_valid of a port that is free to m_valid for a line that is there;
+//                a lookup every two clocks: what it finds has two beats of 256 bits, one after the
+//                other.
+//   rules        Stage 0 gives the clock to a fill, a set or a request in the order that
+//                cchip_cache lists; new and repeated requests come from cchip_cache_requests. In
+//                stage 6 a lookup is a hit, falls asleep, asks for a frame, is refused with OWED
+//                because every slot is lost, or is looked up again. The last happens if its set has
+//                changed since stage 1, if no frame of the set may be reallocated, or if the grant
+//                went to another port.
+//   inside       Two cchip_cache_way, cchip_cache_requests, cchip_cache_waiters. stale_q2 to
+//                stale_q6 follow a lookup and remember whether its set has changed; the changes
+//                that are still in the two stages behind stage 6 are compared beside it (same_q6).
 module cchip_cache_port #(
     parameter integer PLACES = 32,  // places of a port (line); legal: 2, 4, 8, 16, 32, 64
     parameter integer MISSES = 32,  // slots of lines in flight; legal: 2, 4, 8, 16, 32

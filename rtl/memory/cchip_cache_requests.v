@@ -9,6 +9,8 @@
 //   throughput   a lookup on each clock with free = 1
 //   cuts         all but free and the new request to the lookup
 //   reset        no request. Room is known: at most PLACES requests are with a port at a time
+//   inside       Two cchip_fifo: new requests that found the port taken, and those to be looked up
+//                again.
 module cchip_cache_requests #(
     parameter integer PLACES = 32,  // places of a port (line); legal: 2, 4, 8, 16, 32, 64
     parameter integer LINE_W = 32   // width of a line's number (bit); legal: SET_W + 1 .. 58

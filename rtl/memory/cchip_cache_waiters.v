@@ -15,6 +15,12 @@
 //   throughput   one request per clock
 //   cuts         all but serve_ready to serving
 //   reset        no request waits
+//   inside       Of each place two bits, asleep and awake, and the slot it waits for. The lowest
+//                place that is awake is found by groups of four: a carry chain over 64 bits is
+//                slower.
+//   why          The slot is written whenever a decision about the place falls, not only when the
+//                request falls asleep: that is known too late in the clock to enable registers of
+//                all places. It counts only while the place is asleep.
 module cchip_cache_waiters #(
     parameter integer PLACES = 32,  // places of a port (line); legal: 2, 4, 8, 16, 32, 64
     parameter integer MISSES = 32,  // slots of lines in flight; legal: 2, 4, 8, 16, 32

@@ -10,6 +10,10 @@
 //   throughput   a lookup per clock
 //   cuts         line4 reaches match4, line5 reaches hold5 within the clock; all else is cut
 //   reset        none: entries are unknown until they have been written
+//   inside       A cchip_block_ram of entries between registers on both sides, and the frame of
+//                each slot in LUT memory. An entry keeps the slot of the read that filled it: that
+//                slot's frame says whether the line is still in flight, so nothing has to be
+//                written when it has come.
 module cchip_cache_way #(
     parameter integer WAY = 0,      // this way; legal: 0, 1
     parameter integer MISSES = 32,  // slots of lines in flight; legal: 2, 4, 8, 16, 32

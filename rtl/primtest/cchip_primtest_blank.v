@@ -3,6 +3,10 @@
 `include "cchip_defs.vh"
 // cchip_primtest_blank: empty reconfigurable module: ports identical to the primitive tests. Never
 // ready, never valid, idle = 1, rm_id = CCHIP_RM_BLANK, results 0. All outputs are constants.
+//   about        It fills a slot that has no test in it.
+//   timing       Every output is a constant.
+//   why          A sender that reads rm_id first sees that no module is there. One that does not is
+//                held back by s_pair_ready = 0; no pair is lost.
 module cchip_primtest_blank #(
     parameter integer COORD_W = 16  // width of a coordinate, only for the ports (bit); legal: >= 1
 ) (

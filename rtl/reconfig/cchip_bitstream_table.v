@@ -13,6 +13,15 @@
 //                write counts
 //   cuts         every path but read_word to read_data
 //   reset        valid: 0; addresses and sizes are undefined until written
+//   about        Software writes it, the scheduler looks up the entry of a swap.
+//   timing       A look-up takes 2 clocks: the address is read on the first, the size on the
+//                second. rst clears the valid bits.
+//   numbers      An entry counts only while its valid bit is 1, so software writes that last.
+//                Entries of slots and modules that are not there read as 0; writes to them are
+//                ignored.
+//   why          Distributed RAM with two read ports (8 words per slot, 16 with points) takes the
+//                place of 256 flip-flops per slot and of two multiplexers of all words, one for the
+//                bus and one for the scheduler.
 module cchip_bitstream_table #(
     parameter integer SLOTS = 2,  // slots; legal: 1..4
     // kinds of pairs, 4 with points against triangles; the modules are 0..KINDS; legal: 3, 4

@@ -14,6 +14,13 @@
 //                two; length is read then
 //   numbers      of the last 32-bit word only the bytes within length are used; length is a
 //                multiple of 4 for CFG_W = 32
+//   timing       From there on a word passes at the end of every slot that has data.
+//   numbers      8 bit: byte 0 of each word first, the last word as far as length goes. 32 bit:
+//                whole words.
+//   inside       A clock divider that starts with the first word, a counter of port words, the byte
+//                number, cchip_crc32 behind the output registers: it sees what the device sees.
+//   why          The divider is an enable of the one clock, not a clock. A slot without data is
+//                lost whole, as on a port whose clock runs on, and counted as a stall.
 module cchip_config_port #(
     parameter integer CFG_W = 8,       // width of the configuration port (bit); legal: 8, 32
     // clocks per word of the port; at 100 MHz 2 for 8 bit at 50 MHz, 1 for 32 bit at 100 MHz;

@@ -9,6 +9,10 @@
 //   cuts         every path but read_phase to read_clocks
 //   reset        rst or clear: every phase reads 0. The RAM is not reset, a bit for each phase says
 //                whether its word belongs to the last swap.
+//   timing       A word shows elapsed one clock later. read_phase must not change while its word is
+//                read. rst or clear: every phase reads 0.
+//   why          The sequencer counts the clocks of a phase anyway; sixteen words of RAM only
+//                remember. A RAM cannot be set to 0 at once, the bits can.
 module cchip_phase_clocks (
     input  wire                      clk,         // clock, rising edge
     input  wire                      rst,         // synchronous reset, active high

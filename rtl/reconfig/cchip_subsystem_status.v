@@ -6,6 +6,8 @@
 //   latency      1 clock from a report to every output
 //   cuts         every path: each output is a flip-flop
 //   reset        all 0; clear: lost 0, a report on its clock is not in lost
+//   numbers      lost wraps at 2^32. cchip_counter_file has what is counted one by one.
+//   why          A report may bring up to 65,535 pairs, so their sum has an adder of its own.
 module cchip_subsystem_status (
     input  wire                            clk,           // clock, rising edge
     input  wire                            rst,           // synchronous reset, active high

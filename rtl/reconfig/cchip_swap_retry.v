@@ -13,6 +13,22 @@
 //   latency      1 clock from the report to resting
 //   cuts         every path: each output comes from flip-flops
 //   reset        nothing rests, level 0
+//   timing       resting rises on the clock after the report and is 1 for exactly
+//                CCHIP_RETRY_CLOCKS << level clocks, counted from the latest failure. All outputs
+//                come from flip-flops. An entry is hopeless while it rests after eight failures in
+//                a row or more, counted while any entry has failed and not ended well; when its
+//                rest is over it is tried again.
+//   numbers      DEVICE, BUS, MEMORY, SHUTDOWN, ABORTED, OWED. 256, 512, ... 65536 clocks
+//                (docs/hardware/definitions.md).
+//   inside       A bit per entry: it failed and has not ended well since. One timer for all of them
+//                and one level, which grows by one after each rest and is 0 once no bit is left. An
+//                entry whose valid bit falls is cleared.
+//   why          A fault of the transfer passes: outstanding beats arrive, a bus recovers, an abort
+//                was meant for that moment. Discarding the bitstream would leave pairs without a
+//                test for no reason; trying again at once would keep the bus and the slot busy. -
+//                One timer: swaps come one after the other, so the rests of several entries may as
+//                well end together. - A swap of another entry that ends well does not end the rest:
+//                otherwise two kinds in turn would never back off.
 module cchip_swap_retry #(
     parameter integer SLOTS = 1,  // slots; legal: 1..4
     // kinds of pairs, 4 with points against triangles; the modules are 0..KINDS; legal: 3, 4

@@ -16,6 +16,7 @@
 //                Its value at power-up is an initial value, because no reset can tell a power-up,
 //                after which every slot holds a whole module, from a reset in the middle of a
 //                transfer
+//   timing       1 clock from a step to the signals.
 module cchip_swap_signals #(
     parameter integer SLOTS = 1  // slots; legal: 1..4
 ) (

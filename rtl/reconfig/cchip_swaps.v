@@ -10,6 +10,13 @@
 //   slots        what a swap asks of a slot, and what the slot answers: cchip_config_controller
 //   cuts         every path but the reads of table_data and phase_clocks
 //   reset        no swap; a slot whose rewriting was cut off stays decoupled until a good swap
+//   timing       A report is in the registers a clock after it.
+//   inside       Wiring, and which slot the phase in progress belongs to.
+//   why          It is beside the registers, which set it, and not among the pairs. So a reset of
+//                the core leaves a swap alone, and between it and cchip_slots there are twelve
+//                handshakes instead of forty signals through every level.
+//   test         With its two users: tests/unit/test_cchip_primtest_subsystem.cpp, make
+//                campaign-swaps, make campaign-chip-swaps.
 module cchip_swaps #(
     // kinds of pairs, 4 with points against triangles; the modules are 0..KINDS; legal: 3, 4
     parameter integer KINDS = 3,

@@ -12,6 +12,14 @@
 //   cuts         every path: each output is a flip-flop
 //   reset        no pair begun. m_pair_valid has no ready: the sender's credit says that there is
 //                room
+//   about        The vertices of a pair, one of A and one of B per clock, become a request for
+//                cchip_primtest. It is the entry of a reconfigurable module (cchip_pr_region).
+//   timing       No ready: the credit of the ledger says that the test has room.
+//   numbers      A test of quads gives it the exact answer on the grid, as its own test would;
+//                witness, beats and certainty may differ.
+//   why          first always begins a pair. A pair that was cut off by a swap leaves nothing
+//                behind, and a region that was rewritten in the middle of a pair waits for the next
+//                first.
 module cchip_vertex_collector #(
     parameter integer COORD_W = 16  // width of a signed coordinate (bit); legal: 4..20
 ) (

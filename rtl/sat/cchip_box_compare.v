@@ -7,6 +7,18 @@
 //   numbers      signed COORD_W-bit coordinates; no multiplier
 //   reset        none (data only)
 // Only the degenerate programme uses it: primitives on one line have no other separating axis.
+//   parameters   Checked in cchip_primtest and cchip_sat_select, not here.
+//   timing       Clocks 1 to 4: component; comparisons of the first two and the last two vertices
+//                of each primitive; lower and higher of each couple; comparisons of the couples.
+//                Clocks 5 to 8: minimum and maximum of all; gaps; gaps against E; verdict.
+//   numbers      x < y is the sign of x - y with one bit more. The gaps are differences of two
+//                coordinates less 1, COORD_W + 1 bits: the sign tells whether there is a gap, and
+//                gap > E is gap - 1 >= E. A coordinate is an axis with |L|_1 = 1, so this is the
+//                definite no (docs/develop/architecture.md#a-definite-no) of any other axis.
+//   why          It rides on the beats e_0 x f_l of the degenerate programme, component l, and runs
+//                beside the four macro stages. So it costs no beat and no multiplier; a unit vector
+//                as an axis would have needed one more axis class in stages 1 and 2, and three
+//                beats. The stages take longer, so comparison and multiplexer get a clock each.
 module cchip_box_compare #(
     parameter integer COORD_W = 16,  // width of a coordinate (bit); legal: 4..20
     parameter integer VERTS_A = 3,   // vertices of A (vertex); legal: 3, 4

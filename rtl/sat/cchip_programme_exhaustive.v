@@ -7,6 +7,13 @@
 //   throughput   one verdict per clock
 //   cuts         every path from an input
 //   reset        m_valid; what is remembered is overwritten by the first verdicts of the next pair
+//   about        Part of cchip_axis_programme.
+//   timing       Latency 1 clock, then two levels of logic. The verdicts of a pair come on
+//                consecutive clocks, nA first; another pair may follow at once.
+//   why          The pipeline issues all axes of an EXHAUSTIVE pair back to back, so the state that
+//                travels with a beat cannot carry what earlier beats found. One set of registers
+//                does, because such a pair's verdicts come back to back, too. Its loop from one
+//                verdict to the next is a selection; everything else is computed a clock before.
 module cchip_programme_exhaustive #(
     // 1: a warped quad whose hit is not certain continues with programme TETRAHEDRON; legal: 0, 1
     parameter integer TETRAHEDRON = 0

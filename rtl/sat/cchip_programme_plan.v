@@ -9,6 +9,15 @@
 //   reset        none: outputs mean something one clock after a verdict on a normal only
 // The verdict on nA gives m_info, which the pair's state carries to nB. The verdict on nB gives
 // m_plan. For an EXHAUSTIVE pair, nB must follow nA at once.
+//   about        What the verdicts on both normals of a pair lead to, if neither separates: the
+//                first state of the next programme. Part of cchip_axis_programme, whose datasheet
+//                has the rules.
+//   parameters   Checked in cchip_sat_select and cchip_axis_controller, not here.
+//   timing       Latency 1 clock from s_*, then the logic that chooses the plan: about three levels
+//                of LUTs, behind which cchip_axis_programme has its next register.
+//   why          The state carries m_info from nA to nB, so a pair may wait between the two for any
+//                time and others may pass. An EXHAUSTIVE pair carries nothing; its nB follows nA at
+//                once, so what nA left in the registers is used.
 module cchip_programme_plan #(
     // vertices of A (vertex); legal: 3, 4; VERTS_A VERTS_B is 3 3, 3 4 or 4 4
     parameter integer VERTS_A = 3,

@@ -7,6 +7,8 @@
 //   throughput   an origin every 4 clocks
 //   cuts         every path
 //   reset        no origin
+//   inside       The three rows pass one shifter and one cchip_round_shift, one after the other: an
+//                origin has as many clocks as a pair has vertices.
 module cchip_leaf_origin (
     input  wire         clk,         // clock, rising edge
     input  wire         rst,         // synchronous reset, active high

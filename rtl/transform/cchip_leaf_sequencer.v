@@ -13,6 +13,7 @@
 //                corrupt one every 2 clocks
 //   cuts         all but s_* to m_factor
 //   reset        no leaf pair
+//   rules        Offsets of triangles get the 24 bits that those of quads have.
 module cchip_leaf_sequencer #(
     parameter integer PASSES = 1  // clocks a vertex; legal: 1, 2
 ) (

@@ -15,6 +15,16 @@
 //   cuts         every path: each output is a flip-flop, but those of m_a, m_b and m_kind, which
 //                are one multiplexer behind theirs
 //   reset        pairs inside are forgotten; the credit is whole
+//   timing       CCHIP_TRANSFORM_LATENCY(PASSES) clocks from the first clock of a leaf pair to its
+//                first vertex, 33 or 37; then PASSES clocks a vertex without a gap. 4 for two
+//                triangles, 13 for four pairs of triangles, 5 with quads. It begins while at least
+//                four of the CREDIT are free. m_err, m_kind, m_face_* and m_id are those of the
+//                pair on each of its vertices.
+//   numbers      See cchip_vertex_transform, cchip_normaliser and docs/hardware/image.md.
+//   inside       The two modules, a counter of credit, and a delay line for what is known of a
+//                pair.
+//   why          The way from leaves to a slot has a fixed length and no ready runs back along it:
+//                a leaf pair begins only when there is room for all that it can become.
 module cchip_transform #(
     parameter integer COORD_W = 16,  // width of a coordinate on the grid (bit); legal: 4..20
     // a vertex; 1 takes 36 multiplier blocks of 18x18 bit, 2 takes 18 (clock); legal: 1, 2

@@ -11,6 +11,17 @@
 //   capacity     DEPTH entries; the sender counts them: m_room = 1 when one has left
 //   cuts         every path: each output is a flip-flop
 //   reset        empty, all credit back
+//   timing       5 clocks from s_valid of an empty queue to m_valid. m_valid stays until m_ready. A
+//                pair is judged when it is next, on the clock before it is offered: one whose query
+//                has ended leaves by m_drop, without credit. An entry comes only while fewer than
+//                DEPTH are inside by the sender's count (one more for each, one less for each
+//                m_room), and not on the first clock after reset. Epochs stay through a reset; the
+//                epoch of a context must have been written before its first entry.
+//   numbers      CREDIT after reset, one less for each pair that leaves by m, one more for each
+//                clock with s_credit.
+//   inside       A queue of entries in a cchip_fifo, and a copy of every context's epoch.
+//   why          An entry for a node pair instead of 16 for its pairs: room is reserved for one
+//                thing.
 module cchip_leaf_queue #(
     parameter integer QUERIES = 16,  // queries at once (query); legal: 2, 4, 8, 16
     parameter integer DEPTH = 72,    // capacity (entry); legal: 1..1024

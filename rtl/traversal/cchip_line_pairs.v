@@ -16,6 +16,11 @@
 //   credit       a place is used again only after its pair has left its queue
 //   cuts         every path: each output is a flip-flop
 //   reset        no line of before may come; the queues are empty
+//   rules        Each line comes once.
+//   inside       Of each place one bit, which every line inverts: a second line finds it 1. For
+//                each port a cchip_block_ram of lines and another one of the lines of leaf pairs,
+//                which is written 256 bits wide and read 64, the codes in LUT memory, and two
+//                cchip_fifo.
 module cchip_line_pairs #(
     parameter integer PAIRS   = 48,  // node pairs in flight: places 0 .. PAIRS - 1; legal: 1..63
     parameter integer LEAVES  = 16,  // leaf pairs in flight: the places behind them; legal: 1..63

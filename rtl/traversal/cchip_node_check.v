@@ -15,6 +15,12 @@
 //   throughput   a pair every second clock
 //   cuts         every path: each output is a flip-flop
 //   reset        nothing inside; what is kept is unknown until it has been written
+//   rules        A line of A could not be read (MEMORY); of two headers one has another magic or
+//                version (BAD_DESCRIPTOR); what is wrong with A's line; what is wrong with B's.
+//                Wrong with a line may be: it could not be read (MEMORY). The extent of a node is
+//                above 18 or the box of a child inverted, greatest < least (CORRUPT). A child lies
+//                not behind its node or outside the image, or the root of a header does (OUTSIDE).
+//   inside       The fields on the first clock, compared on the second, judged on the third.
 module cchip_node_check #(
     parameter integer QUERIES = 16,  // queries at once (query); legal: 2, 4, 8, 16
     parameter integer PLACE_W = 6    // width of the number of a pair (bit); legal: 3..6

@@ -12,6 +12,8 @@
 //   throughput   an event per clock
 //   cuts         every path: each output is a flip-flop, or the output of a block RAM
 //   reset        every context and every epoch is cleared, in 4 QUERIES clocks: running = 0
+//   inside       States, constants and works in LUT memory; the stacks of all contexts in one
+//                cchip_block_ram.
 module cchip_traversal_contexts #(
     parameter integer QUERIES = 16,  // queries at once (query); legal: 2, 4, 8, 16
     parameter integer STACK   = 64,  // entries of a query's stack (entry); legal: 8, 16, 32, 64

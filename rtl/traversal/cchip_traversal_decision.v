@@ -14,6 +14,17 @@
 //   cuts         every path: each output is a flip-flop
 //   reset        drops the events inside. Without an event all outputs that say what happens
 //                are 0
+//   parameters   cchip_traversal checks them.
+//   timing       All outputs three clocks after the event, but m_started after one.
+//   numbers      The best child pair of a verdict continues in its parent's place if there is room
+//                for its leaves; else all wait, it among the strong ones. From the stack the lowest
+//                number goes, of the strong ones if there are some. A child that is a leaf
+//                continues as its parent's line with a mask of one child. Any query ends with the
+//                code of a line or of a result, with the step limit, with a full stack, and with 0
+//                when nothing is in flight or on the stack. Events of a query that has ended change
+//                the work of their epoch only.
+//   why          One module decides everything about a query, from registers to registers: it can
+//                be tested with any state, one event at a time.
 module cchip_traversal_decision #(
     parameter integer STACK  = 64,  // entries of a query's stack (entry); legal: 8, 16, 32, 64
     // width of the count of what an epoch has in flight (bit); legal: 6..16

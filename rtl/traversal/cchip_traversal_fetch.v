@@ -10,6 +10,7 @@
 //   throughput   a pair per clock
 //   cuts         every path: each output depends on flip-flops only
 //   reset        the queue is empty, every place is free
+//   inside       cchip_leaf_queue, a cchip_pool of places for leaf pairs, and one output register.
 module cchip_traversal_fetch #(
     parameter integer QUERIES = 16,     // queries at once (query); legal: 2, 4, 8, 16
     parameter integer PAIRS = 48,       // node pairs in flight; legal: 1..63

@@ -5,6 +5,11 @@
 // Ports and rules are those of the two.
 //   cuts         every path: each output is a flip-flop
 //   reset        must reset the bus, too
+//   parameters   Its parts stop elaboration at other values.
+//   timing       A read that lasts longer than memory_limit clocks ends its query with code 7.
+//   numbers      None of its own.
+//   why          A design with other readers of memory uses cchip_broad_phase and makes it a client
+//                beside them.
 module cchip_broad_phase_axi #(
     parameter integer QUERIES = 16,     // queries at once (query); legal: 2, 4, 8, 16
     parameter integer PAIRS = 48,       // node pairs in flight; legal: with LEAVES 8, 16, 32 or 64

@@ -15,6 +15,22 @@
 //   otherwise    the selected module, nothing added; rst resets all of them
 //   clocks       a module that is not selected has none unless rst or the random vertices want one:
 //                what it does cannot be seen, and it takes most of the time of a simulation
+//   about        A reconfigurable region for simulations: all modules and a selector that only a
+//                complete, correct payload moves. Same ports as cchip_pr_region and the
+//                configuration port. cchip_pr_slot holds it if SIMULATION = 1.
+//   parameters   Other values stop elaboration as in cchip_pr_config_memory and cchip_pr_region.
+//   timing       While garbage = 1: every output is random on every clock, m_result_valid included;
+//                all modules get rst = 0 and random vertices, regardless of the inputs. rst resets
+//                all modules on the other clocks. Once a payload is whole its module is there but
+//                fresh: it continues with random pairs until rst rises. So a controller that holds
+//                its region in reset during the transfer, but leaves out the reset on
+//                configuration, gets answers to pairs that were never sent.
+//   numbers      Random numbers: a 64-bit xorshift, started from SEED and SLOT_ID. It is not reset:
+//                every transfer brings other garbage, every run the same.
+//   why          Verilator has no X, and a plain multiplexer between modules hides what goes wrong
+//                in practice. Random outputs show a missing or late decoupling as answers to no
+//                request; modules full of random pairs show a missing reset in the same way.
+//   measured     No area, no clock: for simulations only.
 module cchip_pr_virtual #(
     // number of this slot, compared with the one in a payload; legal: 0..255
     parameter integer SLOT_ID = 0,
