@@ -232,6 +232,7 @@ def run(*command, cwd=ROOT):
 # ---- the RTL
 
 
+@functools.lru_cache(None)
 def rtl_files():
     """Path of every module below the root, those for simulation only at the end."""
     files = [file_list.parent / line.strip() for file_list in (RTL / "cchip.f", MODELS)
