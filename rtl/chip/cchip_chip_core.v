@@ -31,8 +31,7 @@
 module cchip_chip_core #(
     parameter integer QUERIES = 16,  // queries at once (query); legal: 2, 4, 8, 16
     parameter integer PAIRS = 48,  // node pairs in flight; legal: see cchip_traversal
-    // leaf pairs that are fetched at once; legal: PAIRS + LEAVES is 8, 16, 32 or 64; PAIRS + LEAVES
-    // is 8, 16, 32 or 64
+    // leaf pairs that are fetched at once; legal: PAIRS + LEAVES is 8, 16, 32 or 64
     parameter integer LEAVES = 16,
     parameter integer STACK = 64,  // entries of a query's stack (entry); legal: 8, 16, 32, 64
     // entries of the queue of leaves (entry); legal: over PAIRS, to 128
