@@ -1,20 +1,29 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Measures what the datasheets claim and keeps them in step with the RTL.
+"""The datasheets: builds them from the RTL, and measures what they show.
+
+A datasheet has the page docs/modules/MODULE.md, if the module has one, or else the header comment of its file; the tables
+of parameters and ports, made of the declarations in the RTL and the comments there; an instance template, if designs of
+others instantiate the module; what docs/figures/modules.csv has measured. `make docs` writes one for every module into the
+site, scripts/export.py one into the folder of each top; git has none of them.
+
+Comments in the head of a module, which --check asks for: the meaning of a parameter or port stands behind its declaration
+or in the lines above it; for a parameter, "; legal: " and the legal values may follow. A line `// ---- NAME` above that
+begins a group of ports; what follows a colon or semicolon explains it, and its further lines are indented.
 
 usage: datasheet.py                        measure everything, rewrite the generated tables (many minutes)
        datasheet.py PAGE...                the same for some pages only: a module, architecture, verification
-       datasheet.py --write simulation     the same without what --compare simulation leaves out, so it takes minutes
+       datasheet.py --page MODULE          print a datasheet
+       datasheet.py --write simulation     measure what --compare simulation does and rewrite it, so it takes minutes
        datasheet.py --compare simulation   write nothing; measure what simulation tells, and exit 1 with the differences if
                                            a table says otherwise (not: areas; of the primitive tests' tables only the
                                            latency of a lone pair)
        datasheet.py --compare all          the same for every generated table (many minutes)
-       datasheet.py --check                write nothing; exit 1 if a module has no datasheet, or one whose parameters,
-                                           ports or markers do not agree with the RTL, or if a page names a file or links
-                                           to a page that does not exist, or if an instance template is not that of the RTL
-       datasheet.py --write templates      rewrite the instance templates of the modules that a design of its own instantiates
-       datasheet.py --templates            write nothing; elaborate the templates as the datasheets show them, exit 1 with what
-                                           Icarus Verilog says about one (a name that the RTL does not have, another width)
+       datasheet.py --check                write nothing; exit 1 if a parameter or port has no meaning in the RTL, a page in
+                                           docs/modules/ no module, a module no row of figures or no link in docs/README.md,
+                                           or if a page names a file or links to a page that does not exist
+       datasheet.py --templates            write nothing; elaborate the instance templates, exit 1 with what Icarus Verilog
+                                           says about one (a name that the RTL does not have, another width)
        datasheet.py --latency MODULE       clocks from an input to the output it changes (Icarus Verilog)
        datasheet.py --stream [NAME=VALUE...]   a primitive test: latency, clocks per pair, drain (Icarus Verilog);
                                            NAME: a parameter of scripts/datasheet_stream.v, as VERTS_B=4
@@ -22,10 +31,11 @@ usage: datasheet.py                        measure everything, rewrite the gener
        datasheet.py --leaves               18x18 multipliers for every COORD_W, shape and projection (Icarus Verilog)
        datasheet.py --bounds               two bounds on the error of a sign, mean over random triples of edges
 
-Tables are written between the lines `<!-- generated: begin NAME -->` and `<!-- generated: end -->` (a datasheet has two:
-one without NAME, simulated, and area, synthesised; some have a template). A row of a table of ports with a bold name and
-nothing else begins the ports of an interface. JOBS = tools at the same time (default: all processors). Tools: Debian's yosys 0.23 and iverilog 11; default parameters unless a table says otherwise."""
+Tables are written into docs/figures/modules.csv, and on pages between the lines `<!-- generated: begin NAME -->` and
+`<!-- generated: end -->`. JOBS = tools at the same time (default: all processors). Tools: Debian's yosys 0.23 and iverilog 11;
+default parameters unless a table says otherwise."""
 import concurrent.futures
+import csv
 import difflib
 import functools
 import json
@@ -41,6 +51,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 RTL = ROOT / "rtl"
 MODELS = ROOT / "sim" / "rtl_models" / "sim.f"  # for simulation only
 MODULES = ROOT / "docs" / "modules"
+FIGURES = ROOT / "docs" / "figures" / "modules.csv"
 README = ROOT / "README.md"
 ARCHITECTURE = ROOT / "docs" / "develop" / "architecture.md"
 VERIFICATION = ROOT / "docs" / "develop" / "verification.md"
@@ -195,10 +206,10 @@ PLACED_ONLY = ("cchip_primtest_array",)
 # design of a user. A tool that sees what is in them looks through the partition and counts neither side rightly.
 STATIC_SIDE = {"cchip_primtest_subsystem": "SLOTS 1"}
 
-# Modules that a design of its own instantiates: their ports are listed by interface, and they have an instance template.
+# Modules that a design of its own instantiates: their ports are in groups, and they have an instance template.
 INSTANTIATED = ("cchip_primtest", "cchip_primtest_tri_tri", "cchip_primtest_tri_quad", "cchip_primtest_quad_quad",
-                "cchip_primtest_point_tri", "cchip_primtest_subsystem", "cchip_broad_phase", "cchip_chip", "cchip_cache", "cchip_axi_read", "cchip_axi_write",
-                "cchip_fifo", "cchip_skid_buffer")
+                "cchip_primtest_point_tri", "cchip_primtest_subsystem", "cchip_broad_phase", "cchip_chip", "cchip_cache",
+                "cchip_axi_read", "cchip_axi_write", "cchip_fifo", "cchip_skid_buffer")
 
 LATENCY_LIMIT = 1000  # clocks; a longer wait means a stimulus without effect
 
@@ -221,6 +232,7 @@ def run(*command, cwd=ROOT):
 # ---- the RTL
 
 
+@functools.lru_cache(None)
 def rtl_files():
     """Path of every module below the root, those for simulation only at the end."""
     files = [file_list.parent / line.strip() for file_list in (RTL / "cchip.f", MODELS)
@@ -232,21 +244,48 @@ def squeeze(text):
     return re.sub(r"\s+", "", text)
 
 
+DECLARATION = re.compile(r"\s*(?:parameter\s+integer\s+(?P<parameter>\w+)\s*=\s*(?P<value>[^,]*[^,\s])|"
+                         r"(?P<direction>input|output)\s+(?:wire|reg)\s+(?:signed\s+)?(?:\[(?P<top>[^\]]*):0\])?\s*(?P<port>\w+))\s*,?\s*$")
+
+
+def head(text, module):
+    """Parameters [(name, default, meaning)] and ports [(direction, upper end of the range, name, meaning, group)] of a
+    module in a file's text; a meaning is empty and a group None where the RTL has no comment."""
+    found = re.search(rf"^module\s+{module}\b(.*?)^\)\s*;", text, re.S | re.M)
+    if not found:
+        fail(f"no module {module}")
+    parameters, ports, above, group = [], [], [], None
+    for line in found[1].splitlines():
+        code, _, comment = (part.strip() for part in line.partition("//"))
+        declaration = DECLARATION.match(code)
+        if declaration:
+            in_heading = [bool(above[0].startswith("----")) if above else False]
+            for one in above[1:]:
+                in_heading.append(one.startswith("     ") and in_heading[-1])
+            heading = " ".join(one.strip("- ") for one, yes in zip(above, in_heading) if yes)
+            group = heading or group
+            meaning = " ".join([one.strip() for one, yes in zip(above, in_heading) if not yes] + [comment]).strip()
+            if declaration["parameter"]:
+                parameters.append((declaration["parameter"], declaration["value"], meaning))
+            else:
+                ports.append((declaration["direction"], declaration["top"] or "", declaration["port"], meaning, group))
+        elif code.startswith(")"):
+            group = None
+        above = [] if code else above + [line.split("//", 1)[1].removeprefix(" ")] if comment else above
+    return parameters, ports
+
+
+@functools.lru_cache(None)
 def declared(module):
-    """Parameters [(name, default)] and ports [(direction, upper end of the range, name)] of a module, as they are written."""
-    text = re.sub(r"//[^\n]*", "", (ROOT / rtl_files()[module]).read_text())
-    head = re.search(rf"\bmodule\s+{module}\b(.*?)\);", text, re.S)
-    if not head:
-        fail(f"{rtl_files()[module]}: no module {module}")
-    return (re.findall(r"\bparameter\s+integer\s+(\w+)\s*=\s*([^,\n]+)", head.group(1)),
-            re.findall(r"\b(input|output)\s+(?:wire|reg)\s+(?:signed\s+)?(?:\[([^\]]*):0\])?\s*(\w+)", head.group(1)))
+    """The head of a module of this project."""
+    return head((ROOT / rtl_files()[module]).read_text(), module)
 
 
 def parse(module):
     """Parameters [(name, default)] and ports [(name, direction, width)] of a module, in order; blanks removed."""
     parameters, ports = declared(module)
-    widths = [(name, direction, width_of(squeeze(top))) for direction, top, name in ports]
-    return [(name, squeeze(value).replace("`", "")) for name, value in parameters], widths
+    widths = [(name, direction, width_of(squeeze(top))) for direction, top, name, _, _ in ports]
+    return [(name, squeeze(value).replace("`", "")) for name, value, _ in parameters], widths
 
 
 @functools.lru_cache(None)
@@ -480,11 +519,7 @@ def lone_only(path, rows):
 
 
 def speed(module, quick=False):
-    if module == "cchip_primtest_blank":
-        return "No latency and no throughput: every output is a constant.\n"
-    if module not in PRIMTESTS:
-        return table(["quantity", "value", "command"],
-                     [["latency, clocks", latency(module), f"`scripts/datasheet.py --latency {module}`"]])
+    """The table of a primitive test."""
     settings = shape_settings(PRIMTESTS[module])
     text = stream(*settings, *(["LONE=1"] if quick else []))
     rows = [[name.replace("_", " "), mode, beats, lone, f"{least} / {mean} / {greatest}", busy, drain]
@@ -501,18 +536,39 @@ def synthesised(module):
     return rtl_files()[module].startswith("rtl/") and module not in PLACED_ONLY
 
 
-def area(module):
-    text = "Fmax: whole primitive tests are placed and routed, see [fpga.md](../hardware/fpga.md).\n\n"
-    kinds = list(next(iter(TARGETS.values()))[1])
-    rows = []
-    targets = {t: of for t, of in TARGETS.items() if module not in STATIC_SIDE or t == "Lattice ECP5"}
-    for target, (script, patterns) in targets.items():
-        found = cells(script, module)
-        count = lambda pattern: sum(n for cell, n in found.items() if re.fullmatch(pattern, cell))
-        rows.append([target] + [count(patterns[kind]) for kind in kinds])
-    what = f"static side, `{STATIC_SIDE[module]}`, regions black-boxed" if module in STATIC_SIDE else "default parameters"
-    text += table([f"Yosys 0.23, {what}"] + kinds, rows) + "\nCommands, in `rtl/`:\n\n"
-    return text + "".join(f"    {synthesis(script, module)}\n" for script, _ in targets.values())
+def targets(module):
+    return [target for target in TARGETS if module not in STATIC_SIDE or target == "Lattice ECP5"]
+
+
+def measured(module, simulation=True, synthesis=True):
+    """Figures of a module, by column of docs/figures/modules.csv."""
+    found = {}
+    if simulation and module in STIMULI:
+        found["latency"] = str(latency(module))
+    for target in targets(module) if synthesis and synthesised(module) else ():
+        script, patterns = TARGETS[target]
+        counts = cells(script, module)
+        for kind, pattern in patterns.items():
+            found[f"{target}: {kind}"] = str(sum(n for cell, n in counts.items() if re.fullmatch(pattern, cell)))
+    return found
+
+
+@functools.lru_cache(None)
+def figures():
+    """The rows of docs/figures/modules.csv by module."""
+    with FIGURES.open(newline="") as file:
+        return {row["module"]: row for row in csv.DictReader(file)}
+
+
+def write_figures(found):
+    """Writes {module: figures} into docs/figures/modules.csv, in the order of rtl/cchip.f."""
+    before = figures()
+    columns = ["module", "latency", *(f"{target}: {kind}" for target, (_, kinds) in TARGETS.items() for kind in kinds)]
+    with FIGURES.open("w", newline="") as file:
+        writer = csv.DictWriter(file, columns, restval="", lineterminator="\n")
+        writer.writeheader()
+        writer.writerows({"module": module, **before.get(module, {}), **found.get(module, {})} for module in rtl_files())
+    print(f"wrote {FIGURES.relative_to(ROOT)}", flush=True)
 
 
 THROUGHPUT = [*([f"SUBSTAGES={n}"] for n in (6, 8, 10, 12)), *([f"CONTEXTS={n}"] for n in (1, 2, 3, 4, 5, 8)),
@@ -579,15 +635,13 @@ def rewrite(path, name, block):
     print(f"wrote {path.relative_to(ROOT)} {name}".rstrip(), flush=True)
 
 
-def blocks(page, simulation=True, synthesis=True, quick=False):
-    """(path, name, how it is made) of the generated blocks of a page."""
+def blocks(page, quick=False):
+    """(path, name, how it is made) of the generated blocks of a page; simulation makes all of them."""
     if page == "architecture":
-        return [(ARCHITECTURE, name, make) for name, make in BLOCKS.items()] if simulation else []
+        return [(ARCHITECTURE, name, make) for name, make in BLOCKS.items()]
     if page == "verification":
-        return [(VERIFICATION, "configurations", configurations)] if simulation else []
-    path = MODULES / f"{page}.md"
-    return ([(path, "", lambda: speed(page, quick))] if simulation else []) + \
-        ([(path, "area", lambda: area(page))] if synthesis and synthesised(page) else [])
+        return [(VERIFICATION, "configurations", configurations)]
+    return [(MODULES / f"{page}.md", "", lambda: speed(page, quick))] if page in PRIMTESTS else []
 
 
 def pages():
@@ -607,16 +661,17 @@ def settings_of_all(quick):
 
 def write_simulation():
     in_parallel(lambda settings: stream(*settings), settings_of_all(True))
-    jobs = [block for page in pages() for block in blocks(page, synthesis=False, quick=True)]
+    jobs = [block for page in pages() for block in blocks(page, quick=True)]
     for (path, name, _), block in zip(jobs, in_parallel(lambda job: job[2](), jobs)):
         rewrite(path, name, block)
+    write_figures(dict(zip(rtl_files(), in_parallel(lambda module: measured(module, synthesis=False), rtl_files()))))
 
 
 def compare(what):
-    """Prints what the generated blocks would become; 1 if one of them is stale."""
+    """Prints what the generated blocks and figures would become; 1 if one of them is stale."""
     quick = what == "simulation"
     in_parallel(lambda settings: stream(*settings), settings_of_all(quick))
-    jobs = [block for page in pages() for block in blocks(page, synthesis=not quick, quick=quick)]
+    jobs = [block for page in pages() for block in blocks(page, quick=quick)]
     stale = 0
     for (path, name, _), fresh in zip(jobs, in_parallel(lambda job: replaced(job[0], job[1], job[2]()), jobs)):
         difference = list(difflib.unified_diff(path.read_text().splitlines(), fresh.splitlines(), "page", "measured", lineterm="", n=0))
@@ -624,38 +679,113 @@ def compare(what):
             stale += 1
             print(f"{path.relative_to(ROOT)}: block '{begin(name)}' is stale: scripts/datasheet.py {path.stem}")
             print("\n".join(difference[2:12]), flush=True)
-    print(f"{len(jobs)} generated blocks, {stale} stale")
-    return 1 if stale or not jobs else 0
+    count = 0
+    for module, found in zip(rtl_files(), in_parallel(lambda module: measured(module, synthesis=not quick), rtl_files())):
+        shown = figures().get(module, {})
+        difference = [f"{key} {shown.get(key)}, measured {value}" for key, value in found.items() if shown.get(key) != value]
+        count += len(found)
+        if difference:
+            stale += 1
+            print(f"{FIGURES.relative_to(ROOT)}: {module} is stale: scripts/datasheet.py {module}: {'; '.join(difference)}", flush=True)
+    print(f"{len(jobs)} generated blocks, {count} figures, {stale} stale")
+    return 1 if stale or not jobs or not count else 0
 
 
-# ---- check
+# ---- datasheets
 
 
-def rows_below(text, heading):
-    section = re.search(rf"^## {heading}$(.*?)(?=^## |\Z)", text, re.M | re.S)
-    return re.findall(r"^\|(.*)\|$", section.group(1), re.M)[2:] if section else []
+def escaped(text, module):
+    """A comment of the RTL in a cell of a table: names are code, names of modules and pages are links."""
+    parameters, ports = declared(module)
+    own = {name for name, *_ in parameters} | {name for _, _, name, *_ in ports if "_" in name}
+
+    def word(match):
+        name = match[0]
+        if name.startswith("docs/"):
+            return f"[{name.rsplit('/', 1)[1].split('#')[0]}](../{name.removeprefix('docs/')})"
+        if name in rtl_files() and name != module:
+            return f"[{name}]({name}.md)"
+        return f"`{name}`" if name in own or "_" in name else name
+
+    for character, entity in (("&", "&amp;"), ("<", "&lt;"), ("|", "&#124;"), ("*", "&#42;"), ("[", "&#91;"), ("]", "&#93;"), ("~", "&#126;")):
+        text = text.replace(character, f"\0{entity}\0")
+    parts = text.split("\0")
+    return "".join(part if i % 2 else re.sub(r"\bdocs/[\w/-]+\.md(#[\w-]+)?|\b[A-Za-z]\w*\b", word, part.replace("`", ""))
+                   for i, part in enumerate(parts))
 
 
-def interface(row):
-    """Name of the interface whose ports follow this row, or None."""
-    found = re.fullmatch(r" \*\*(.+)\*\* \|[ |]*", row)
-    return found and found[1]
+def parameter_table(module):
+    rows = []
+    for name, value, meaning in declared(module)[0]:
+        text, _, legal = meaning.partition("; legal: ")
+        rows.append([f"`{name}`", f"`{value.replace('`', '')}`", escaped(legal, module) or "-", escaped(text, module)])
+    refused = sorted(set(re.findall(r"\bcchip_error_\w+", (ROOT / rtl_files()[module]).read_text())))
+    text = table(["parameter", "default", "legal", "meaning"], rows) if rows else ""
+    return text + ("\nOther values stop elaboration at " + ", ".join(f"`{name}`" for name in refused) + ".\n" if refused else "")
 
 
-def listed(text, heading, columns):
-    """The first columns of the table below a heading, without the rows that name an interface, backquotes and blanks removed."""
-    return [tuple(squeeze(c.replace("`", "")) for c in row.split("|")[:columns]) for row in rows_below(text, heading)
-            if not interface(row)]
+def port_table(module):
+    rows, last = [], None
+    for (_, _, _, meaning, group), (name, direction, width) in zip(declared(module)[1], parse(module)[1]):
+        if group != last:
+            last = group
+            rows.append([f"**{escaped(group, module)}**", "", "", ""])
+        rows.append([f"`{name}`", direction, f"`{width}`", escaped(meaning, module)])
+    return table(["port", "direction", "width", "meaning"], rows)
 
 
-def interfaces(module):
-    """{port: name of its interface} by the table of the datasheet."""
-    name, found = None, {}
-    for row in rows_below((MODULES / f"{module}.md").read_text(), "Ports"):
-        name = interface(row) or name
-        if not interface(row):
-            found[squeeze(row.split("|")[0]).strip("`")] = name
-    return found
+def measured_text(module):
+    row, text = figures().get(module, {}), ""
+    if row.get("latency"):
+        _, change, output = STIMULI[module]
+        inputs = list(dict.fromkeys(re.findall(r"\b(\w+)(?:\[[^\]]*\])? <?= ", change)))
+        text += (f"Latency: {row['latency']} clocks, from {' and '.join(f'`{name}`' for name in inputs)} to `{output}`; "
+                 f"`scripts/datasheet.py --latency {module}`.\n")
+    kinds = list(next(iter(TARGETS.values()))[1])
+    rows = [[target, *(row[f"{target}: {kind}"] for kind in kinds)] for target in targets(module) if row.get(f"{target}: LUT")]
+    if rows:
+        what = f"static side, `{STATIC_SIDE[module]}`, regions black-boxed" if module in STATIC_SIDE else "default parameters"
+        text += "\n" + table([f"Yosys 0.23, {what}"] + kinds, rows) + "\nCommands, in `rtl/`:\n\n"
+        text += "".join(f"    {synthesis(TARGETS[target][0], module)}\n" for target in targets(module))
+        text += "\nFmax: whole primitive tests are placed and routed, see [fpga.md](../hardware/fpga.md).\n"
+    return text
+
+
+def header(module):
+    """Title and text of the header comment of a module's file."""
+    text = (ROOT / rtl_files()[module]).read_text()
+    found = re.search(rf"^// {module}: (.*\n(?://.*\n)*)", text, re.M)
+    if not found:
+        fail(f"{rtl_files()[module]}: no header comment that begins with // {module}:")
+    return "".join(f"    {line}\n" for line in re.sub(r"^// ?", "", found[1], flags=re.M).rstrip().split("\n"))
+
+
+def datasheet(module):
+    """The whole page."""
+    path, rtl = MODULES / f"{module}.md", rtl_files()[module]
+    if path.exists():
+        text = path.read_text().rstrip() + "\n"
+    else:
+        text = f"<!-- SPDX-License-Identifier: Apache-2.0 -->\n# {module}\n\n[RTL](../../{rtl})"
+        test = f"tests/unit/test_{module}.cpp"
+        text += f", [test](../../{test})\n\n" if (ROOT / test).exists() else "\n\n"
+        text += header(module)
+    made = {"Parameters": parameter_table(module), "Ports": port_table(module)}
+    if module in INSTANTIATED:
+        made["Instance template"] = "Every parameter has its default value here and can be left out.\n\n" + template(module)
+    made["Measured"] = measured_text(module)
+    first, new = re.search(r"^## |\Z", text, re.M).start(), ""
+    for heading, block in made.items():
+        section = re.search(rf"^## {heading}\n", text, re.M)
+        if not block:
+            continue
+        if heading == "Measured":
+            text = text.rstrip() + ("\n\n" if section else f"\n\n## {heading}\n\n") + block
+        elif section:
+            text = text[:section.end()] + f"\n{block}" + text[section.end():]
+        else:
+            new += f"## {heading}\n\n{block}\n"
+    return text[:first].rstrip() + f"\n\n{new}" + text[first:]
 
 
 # ---- instance templates
@@ -663,34 +793,33 @@ def interfaces(module):
 
 def template(module):
     """An instance to copy: every parameter with its default, every port at a net of its name."""
-    parameters, _ = declared(module)
+    parameters, ports = declared(module)
     _, widths = parse(module)
     defaults = {}
-    for name, value in parameters:  # a default may name parameters before it, which an instance does not see
-        defaults[name] = re.sub(r"(?<![\w`])[A-Z]\w*", lambda word: defaults.get(word[0], word[0]), value.strip())
-    lines = [f"    .{name}({defaults[name]})" + "," * (name != parameters[-1][0]) for name, _ in parameters]
-    notes = [f"default: {value.strip()}" if defaults[name] != value.strip() else "" for name, value in parameters]
+    for name, value, _ in parameters:  # a default may name parameters before it, which an instance does not see
+        defaults[name] = re.sub(r"(?<![\w`])[A-Z]\w*", lambda word: defaults.get(word[0], word[0]), value)
+    lines = [f"    .{name}({defaults[name]})" + "," * (name != parameters[-1][0]) for name, _, _ in parameters]
+    notes = [f"default: {value}" if defaults[name] != value else "" for name, value, _ in parameters]
     text = [f"{line}  // {note}" if note else line for line, note in zip(lines, notes)]
     if "`" in "".join(defaults.values()):
         text.insert(0, "    // the macros are those of cchip_defs.vh")
-    of, last, body = interfaces(module), None, []
+    last, body = None, []
     length = max(len(name) for name, _, _ in widths)
-    for name, direction, width in widths:
-        if of.get(name) != last:
-            last = of[name]
-            body.append(f"    // {last}")
+    for (*_, group), (name, direction, width) in zip(ports, widths):
+        if group != last:
+            last = group
+            body.append(f"    // {re.split('[:;]', group)[0]}")
         pin = f"    .{name}({name})" + "," * (name != widths[-1][0])
         body.append(f"{pin:{2 * length + 8}}  // {direction}{'' if width == '1' else ', ' + width}")
     return "\n".join(["```verilog", f"{module} #(", *text, f") u_{module.removeprefix('cchip_')} (", *body, ");", "```", ""])
 
 
 def harness(module):
-    """The template of the datasheet within a module that declares its nets as the RTL declares the ports."""
+    """The template within a module that declares its nets as the RTL declares the ports."""
     parameters, ports = declared(module)
-    found = re.search(BLOCK.format(" template"), (MODULES / f"{module}.md").read_text(), re.S)
-    code = re.search(r"^```verilog\n(.*?)^```$", found[0], re.M | re.S)[1] if found else ""
-    nets = "".join(f"  wire {f'[{top}:0] ' if top else ''}{name};\n" for _, top, name in ports)
-    constants = "".join(f"  localparam integer {name} = {value};\n" for name, value in parameters)
+    code = re.search(r"^```verilog\n(.*?)^```$", datasheet(module), re.M | re.S)[1]
+    nets = "".join(f"  wire {f'[{top}:0] ' if top else ''}{name};\n" for _, top, name, _, _ in ports)
+    constants = "".join(f"  localparam integer {name} = {value};\n" for name, value, _ in parameters)
     return f"module template_{module};\n{constants}{nets}{code}endmodule\n"
 
 
@@ -707,31 +836,26 @@ def elaborate_templates():
     return 1 if said or result.returncode else 0
 
 
+# ---- check
+
+
 def findings(module):
-    path = MODULES / f"{module}.md"
-    if not path.exists():
-        yield f"{path.relative_to(ROOT)} is missing: write it like docs/modules/cchip_fifo.md"
-        return
-    text = path.read_text()
-    parameters, ports = parse(module)
-    for heading, expected, columns in (("Parameters", parameters, 2), ("Ports", ports, 3)):
-        found = listed(text, heading, columns)
-        if found == expected:
-            continue
-        yield from (f"{path.relative_to(ROOT)}: {heading}: {' '.join(e)} of the RTL is not listed so"
-                    for e in expected if e not in found)
-        yield from (f"{path.relative_to(ROOT)}: {heading}: {' '.join(f)} is not in the RTL" for f in found if f not in expected)
-        if sorted(found) == sorted(expected):
-            yield f"{path.relative_to(ROOT)}: {heading}: not in the order of the RTL"
-    if module in INSTANTIATED:
-        if None in interfaces(module).values():
-            yield f"{path.relative_to(ROOT)}: Ports: a row with the name of an interface, like '| **request** | | | |', is to begin the table"
-        found = re.search(BLOCK.format(" template"), text, re.S)
-        if not found or found[0] != f"{begin('template')}\n{template(module)}<!-- generated: end -->":
-            yield f"{path.relative_to(ROOT)}: the instance template is stale or missing: scripts/datasheet.py --write templates"
+    rtl, page = rtl_files()[module], MODULES / f"{module}.md"
+    parameters, ports = declared(module)
+    yield from (f"{rtl}: {name}: no comment says what it means" for name, _, meaning in parameters if not meaning)
+    yield from (f"{rtl}: {name}: no comment says what it means" for _, _, name, meaning, _ in ports if not meaning)
+    if module in INSTANTIATED and None in [group for *_, group in ports]:
+        yield f"{rtl}: a line like '// ---- request' is to begin the ports"
+    if module not in figures():
+        yield f"{FIGURES.relative_to(ROOT)}: no row {module}: scripts/datasheet.py {module}"
+    link = f"modules/{module}.md" if page.exists() else f"../{rtl}"
+    if f"({link})" not in (ROOT / "docs" / "README.md").read_text():
+        yield f"docs/README.md: no link to {link}"
+    if not page.exists() and f"\n// {module}: " not in (ROOT / rtl).read_text():
+        yield f"{rtl}: no header comment that begins with '// {module}: '"
     for _, name, _ in blocks(module):
-        if not re.search(BLOCK.format(f" {name}" if name else ""), text, re.S):
-            yield f"{path.relative_to(ROOT)}: no '{begin(name)}' with '<!-- generated: end -->' behind it"
+        if not page.exists() or not re.search(BLOCK.format(f" {name}" if name else ""), page.read_text(), re.S):
+            yield f"{page.relative_to(ROOT)}: no '{begin(name)}' with '<!-- generated: end -->' behind it"
 
 
 def check():
@@ -739,9 +863,7 @@ def check():
     for path in sorted(MODULES.glob("*.md")):
         if path.stem not in rtl_files():
             found.append(f"{path.relative_to(ROOT)}: no such module in rtl/cchip.f")
-    index = ROOT / "docs" / "README.md"
-    found += [f"docs/README.md: no link to modules/{module}.md" for module in rtl_files()
-              if f"(modules/{module}.md)" not in index.read_text()]
+    found += [f"{FIGURES.relative_to(ROOT)}: {module}: no such module in rtl/cchip.f" for module in figures() if module not in rtl_files()]
     folders = [ROOT / name / "README.md" for name in ("rtl", "sim", "lib", "cpp_ref", "bench", "tests")]
     for path in [README, ROOT / "CONTRIBUTING.md", *folders, *sorted((ROOT / "docs").rglob("*.md"))]:
         for name in re.findall(r"`((?:tests|bench)/[\w/]+\.cpp)`", path.read_text()):
@@ -750,8 +872,9 @@ def check():
         for link in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", path.read_text()):
             if not (path.parent / link).exists():
                 found.append(f"{path.relative_to(ROOT)}: link to {link}, which does not exist")
-    print("\n".join(found) if found else f"{len(rtl_files())} datasheets agree with the RTL")
-    return 1 if found else 0
+    count = sum(len(part) for module in rtl_files() for part in declared(module))
+    print("\n".join(found) if found else f"{len(rtl_files())} modules, {count} parameters and ports, each with its meaning")
+    return 1 if found or not count else 0
 
 
 def main():
@@ -773,9 +896,8 @@ def main():
         print(bounds(), end="")
     elif option == "--templates" and len(arguments) == 1:
         return elaborate_templates()
-    elif arguments == ["--write", "templates"]:
-        for module in INSTANTIATED:
-            rewrite(MODULES / f"{module}.md", "template", template(module))
+    elif option == "--page" and len(arguments) == 2 and arguments[1] in rtl_files():
+        print(datasheet(arguments[1]), end="")
     elif arguments == ["--write", "simulation"]:
         write_simulation()
     elif option == "--compare" and arguments[1:] in (["simulation"], ["all"]):
@@ -787,6 +909,7 @@ def main():
         for page in arguments or pages():
             for path, name, make in blocks(page):
                 rewrite(path, name, make())
+        write_figures({page: measured(page) for page in arguments or pages() if page in rtl_files()})
     return 0
 
 

@@ -24,6 +24,7 @@ import shutil
 import subprocess
 import sys
 
+import datasheet
 import interfaces
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -196,13 +197,21 @@ create_clock -name clk -period {period} [get_ports clk]
 # ---- pages
 
 
-def page(path, exported):
-    """A page of docs/; links to what is not exported, and pictures, become text. `exported`: names of pages below docs/."""
+def page(path, text, exported):
+    """A page of docs/ with that text; links to what is not exported, and pictures, become text. `exported`: names of pages
+    below docs/. A link to the RTL of a module leads to its datasheet."""
+    rtl = {ROOT / file: ROOT / "docs" / "modules" / f"{module}.md" for module, file in datasheet.rtl_files().items()}
+
     def keep(match):
         target = match.group(2).split("#")[0]
-        name = os.path.relpath((path.parent / target).resolve(), ROOT / "docs") if target else ""
-        return match.group(0) if not target or ":" in target or name in exported else match.group(1)
-    return re.sub(r"!?\[([^\]]*)\]\(([^)]*)\)", keep, path.read_text())
+        if not target or ":" in target:
+            return match.group(0)
+        found = (path.parent / target).resolve()
+        found = rtl.get(found, found)
+        if os.path.relpath(found, ROOT / "docs") not in exported or found == path:
+            return match.group(1)
+        return match.group(0).replace(f"({target}", f"({os.path.relpath(found, path.parent)}")
+    return re.sub(r"!?\[([^\]]*)\]\(([^)]*)\)", keep, text)
 
 
 def write_pages(folder, names):
@@ -210,10 +219,10 @@ def write_pages(folder, names):
     for name in names:
         pages += MORE_PAGES.get(name, ())
     for name in pages:
-        if not (ROOT / "docs" / name).exists():
-            raise ExportError(f"docs/{name} is missing: every module has a datasheet")
+        path = ROOT / "docs" / name
+        text = datasheet.datasheet(path.stem) if name.startswith("modules/") else path.read_text()
         (folder / "docs" / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / "docs" / name).write_text(page(ROOT / "docs" / name, pages))
+        (folder / "docs" / name).write_text(page(path, text, pages))
 
 
 def blocks(suffix, text):

@@ -174,6 +174,32 @@ def ports(registers):
         yield "output", 1, 1, f"hwif_out_{name}_write"
 
 
+EXTERNAL = {"raddr": "word address of the external register that is read", "ack": "answers a read, on its clock or later",
+            "rdata": "the word; 0 without hwif_in_external_ack", "waddr": "word address of the external register that is written",
+            "wdata": "what is written", "wstrb": "the bytes that are written"}
+
+
+def meaning(direction, name):
+    """What a port is for, by its name."""
+    if not name.startswith("hwif_"):
+        return {"clk": "clock, rising edge", "rst": "synchronous reset, active high"}.get(
+            name, f"AXI4-Lite {name.removeprefix('s_axil_').upper()}")
+    _, _, owner, *rest = name.split("_")
+    if owner == "external" and rest[0] in EXTERNAL:
+        return EXTERNAL[rest[0]]
+    if direction == "input":
+        return {"hwset": "1 for a clock: the event has come", "hwclr": "1 for a clock: clears the field"}.get(
+            rest[-1], "what hardware writes; a flip-flop outside")
+    return {"read": "1 for a clock: is read", "write": "1 for a clock: is written"}.get(rest[-1] if rest else "", "the field")
+
+
+def port_line(direction, width, count, name, end):
+    """A declaration with its meaning, on its line if there is room."""
+    line = f"    {direction:6} wire {span(width, count) + ' ' if width * count > 1 else ''}{name}{end}"
+    comment = f"// {meaning(direction, name)}"
+    return f"{line}  {comment}" if len(line) + 2 + len(comment) <= 100 else f"    {comment}\n{line}"
+
+
 def clears_events(r):
     return not r["external"] and any(kind(f) == "event" for f in r["fields"])
 
@@ -450,7 +476,7 @@ def within_columns(text):
 
 def verilog(name_of_map, registers):
     port_list = [(d, width, 1, n) for d, width, n in BUS] + list(ports(registers))
-    port_lines = [f"    {d:6} wire {span(width, count) + ' ' if width * count > 1 else ''}{n}" for d, width, count, n in port_list]
+    port_lines = [port_line(*port, "," * (port != port_list[-1])) for port in port_list]
     inside = [r for r in registers if not r["external"]]
     declarations, resets, updates, outputs, strobes = [], [], [], [], []
     for r in inside:
@@ -479,7 +505,7 @@ def verilog(name_of_map, registers):
             external_outputs.append(f"  assign hwif_out_{name}_write = strobe_q[{len(strobes)}];")
             strobes.append(written)
     return within_columns(FRAME.format(
-        note=note(name_of_map), module=f"{name_of_map}_regs", ports=",\n".join(port_lines), top=ADDR_W - 3, addr_top=ADDR_W - 1,
+        note=note(name_of_map), module=f"{name_of_map}_regs", ports="\n".join(port_lines), top=ADDR_W - 3, addr_top=ADDR_W - 1,
         strobes=len(strobes) - 1, strobe_count=len(strobes), write_choice=chosen(strobes, "written", "waddr_q", "decode"),
         selects=len(selects) - 1, select_count=len(selects), read_choice=chosen(selects, "selected", "raddr_q", "read_q"),
         words_count=len(read_words), words="\n".join(f"      ({word} & {{32{{select_q[{k}]}}}}) |"

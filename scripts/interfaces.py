@@ -10,7 +10,7 @@ PORT = re.compile(r"^ *(input|output) +wire +(?:\[(.*):0\])? *(\w+)")
 def head(text, top):
     """(start, end) of the ports in the text of a module."""
     start = re.search(rf"^module {top}\b.*?^\)? *\($", text, re.M | re.S).end()
-    return start, text.index(");", start)
+    return start, start + re.search(r"^\)\s*;", text[start:], re.M).start()
 
 
 def ports(text, top):

@@ -12,6 +12,7 @@ import re
 import sys
 import xml.etree.ElementTree as xml
 
+import datasheet
 import interfaces
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -45,12 +46,8 @@ def element(tag, *content, **attributes):
 
 def parameters(text):
     """[(name, value, meaning)]; macros become their numbers."""
-    begin = re.search(rf"^module {TOP} #\(", text, re.M).end()
-    found = re.findall(r"((?: *//[^\n]*\n)*) *parameter integer (\w+) = ([^,\n]+)", text[begin:interfaces.head(text, TOP)[0]])
-    meaning, result = "", []
-    for comment, name, value in found:
-        meaning = " ".join(re.findall(r"// *(.*)", comment)) or meaning
-        value = value.strip()
+    result = []
+    for name, value, meaning in datasheet.head(text, TOP)[0]:
         if value.startswith("`"):
             value = re.search(rf"^`define {value[1:]} (\d+)", text, re.M)[1]
         result.append((name, int(value), meaning))

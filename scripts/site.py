@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What mkdocs.yml adds to MkDocs (make docs):
 
+- Every module of the RTL has a page modules/MODULE.md, which scripts/datasheet.py builds. A link to the file of a module leads to it.
 - The navigation is docs/README.md: a tab for each of its headings, in it the pages that the tables below link to, in this order. Rows
   whose first cell names a folder (datasheets) are grouped by it.
 - The title of a page is its first heading; MkDocs takes it from the file's name if a comment (SPDX) precedes it.
@@ -12,10 +13,17 @@ import logging
 import os
 import pathlib
 import re
+import sys
+
+from mkdocs.structure.files import File
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import datasheet  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
 DRAWING = re.compile("[\u2500-\u257f]")  # lines of boxes
+PAGE_OF = {ROOT / path: DOCS / "modules" / f"{module}.md" for module, path in datasheet.rtl_files().items()}
 log = logging.getLogger("mkdocs.hooks.site")
 
 
@@ -28,7 +36,9 @@ def on_config(config):
     config.nav = [{"Start": "README.md"}]
     for door, text in zip(sections[1::2], sections[2::2]):
         entries, folders, folder = [], {}, None
-        for cell, page in re.findall(r"^\| *(`[\w/]+`)?.*?\]\(([\w/-]+\.md)\)", text, re.M):
+        for cell, page in re.findall(r"^\| *(`[\w/]+`)?.*?\]\(([\w/-]+\.md|\.\./[\w/]+\.v)\)", text, re.M):
+            if page.endswith(".v"):
+                page = str(PAGE_OF[ROOT / page.removeprefix("../")].relative_to(DOCS))
             folder = cell.strip("`") or folder
             if folder and folder not in folders:
                 folders[folder] = []
@@ -41,14 +51,25 @@ def on_config(config):
     return config
 
 
+def on_files(files, config):
+    for path in PAGE_OF.values():
+        name = str(path.relative_to(DOCS))
+        if files.get_file_from_path(name):
+            files.remove(files.get_file_from_path(name))
+        files.append(File.generated(config, name, content=datasheet.datasheet(path.stem)))
+    return files
+
+
 def on_page_markdown(markdown, page, **_):
     markdown = re.sub(r"\A(?:<!--.*?-->\s*)+", "", markdown, flags=re.S)
-    folder = (DOCS / page.file.src_uri).parent
+    own = DOCS / page.file.src_uri
+    folder = own.parent
 
     def outside(link):
         path = pathlib.Path(os.path.normpath(folder / link[1]))
-        if DOCS in path.parents and path.is_file():
-            return link[0]
+        path = path if PAGE_OF.get(path, own) == own else PAGE_OF[path]
+        if path in PAGE_OF.values() or DOCS in path.parents and path.is_file():
+            return f"]({os.path.relpath(path, folder)}{link[2] or ''})"
         if not path.exists():
             log.warning("%s: link to %s, which does not exist", page.file.src_uri, link[1])
         return f"](repository:{path.relative_to(ROOT)}{link[2] or ''})"

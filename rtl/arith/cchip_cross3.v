@@ -9,16 +9,18 @@
 //                nine adders)
 //   reset        none (data only)
 module cchip_cross3 #(
-    // width of a component of a and b, bit
-    parameter integer E_W = 17,
-    // extra registers before the multipliers, behind their leaves, behind the subtractors; clocks
+    parameter integer E_W = 17,          // width of a component of a and b (bit); legal: 2..52
+    // extra registers before the multipliers (clock); legal: >= 0
     parameter integer OPERAND_REGS = 0,
+    // extra registers behind the multiplier leaves (clock); legal: >= 0
     parameter integer PRODUCT_REGS = 0,
+    // extra registers behind the subtractors (clock); legal: >= 0
     parameter integer RESULT_REGS = 0
 ) (
-    input  wire             clk,
-    input  wire [3*E_W-1:0] a,
-    input  wire [3*E_W-1:0] b,
+    input  wire             clk,  // clock, rising edge
+    input  wire [3*E_W-1:0] a,    // vector, x in the low bits, components signed
+    input  wire [3*E_W-1:0] b,    // vector, x in the low bits, components signed
+    // cross product, x in the low bits, components signed, 2 E_W bits each
     output wire [6*E_W-1:0] q
 );
 

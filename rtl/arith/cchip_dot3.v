@@ -6,20 +6,29 @@
 //   numbers      two's complement, x in the low bits; q wraps modulo 2^(A_W+B_W): exact whenever
 //                the true value fits, as 3x3 determinants do (CCHIP_PROJ_W)
 //   reset        none (data only)
+//   about        Dot product of two vectors of three components: one projector of macro stage 3
+//                (paper, equation 2: "three multipliers and two adders each").
+//   parameters   Illegal values stop elaboration in cchip_mul_wide or cchip_delay.
+//   numbers      In general a sum of three such products needs up to two bits more. Here it does
+//                not: in the pipeline every result is a 3x3 determinant, and those fit (derivation
+//                (docs/develop/architecture.md#widths)). Because additions are modular, wrapped
+//                intermediate sums would not matter even if they occurred.
+//   why          One adder between two registers. The optional registers are placed by hand where
+//                they help: before the multipliers, behind the leaves, and behind the sum, where
+//                they only fill up to the wanted latency.
 module cchip_dot3 #(
-    // width of a component of a, bit
-    parameter integer A_W = 17,
-    // width of a component of b, bit
-    parameter integer B_W = 34,
-    // extra registers before the multipliers, behind their leaves, behind the last adder; clocks
+    parameter integer A_W = 17,          // width of a component of a (bit); legal: 2..52
+    parameter integer B_W = 34,          // width of a component of b (bit); legal: 2..52
+    // extra registers before the multipliers (clock); legal: >= 0
     parameter integer OPERAND_REGS = 0,
+    // extra registers behind the multiplier leaves (clock); legal: >= 0
     parameter integer PRODUCT_REGS = 0,
-    parameter integer RESULT_REGS = 0
+    parameter integer RESULT_REGS = 0  // extra registers behind the last adder (clock); legal: >= 0
 ) (
-    input  wire               clk,
-    input  wire [  3*A_W-1:0] a,
-    input  wire [  3*B_W-1:0] b,
-    output wire [A_W+B_W-1:0] q
+    input  wire               clk,  // clock, rising edge
+    input  wire [  3*A_W-1:0] a,    // vector, x in the low bits, components signed
+    input  wire [  3*B_W-1:0] b,    // vector, x in the low bits, components signed
+    output wire [A_W+B_W-1:0] q     // dot product, signed
 );
 
   localparam integer P_W = A_W + B_W;

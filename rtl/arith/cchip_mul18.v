@@ -11,13 +11,12 @@
 // Every multiplication of the chip goes through this module; a device-specific twin may replace it.
 // A twin of another latency says so by the macro CCHIP_MUL18_LATENCY.
 module cchip_mul18 #(
-    // 1: a, b and p are signed; 0: they are not
-    parameter integer SIGNED = 1
+    parameter integer SIGNED = 1  // 1: a, b and p are signed; 0: they are not; legal: 0, 1
 ) (
-    input  wire        clk,
-    input  wire signed [17:0] a,
-    input  wire signed [17:0] b,
-    output wire signed [35:0] p
+    input  wire        clk,       // clock, rising edge
+    input  wire signed [17:0] a,  // factor
+    input  wire signed [17:0] b,  // factor
+    output wire signed [35:0] p   // product
 );
 
   `CCHIP_REFUSE(SIGNED != 0 && SIGNED != 1, cchip_error_mul18_SIGNED_must_be_0_or_1)

@@ -12,17 +12,15 @@
 //   leaves       CCHIP_LIMBS(A_W) * CCHIP_LIMBS(B_W)
 //   reset        none (data only)
 module cchip_mul_wide #(
-    // width of a, bit, 2..52
-    parameter integer A_W = 17,
-    // width of b, bit, 2..52
-    parameter integer B_W = 34,
-    // extra registers between leaf and adder tree, clocks
+    parameter integer A_W = 17,         // width of a (bit); legal: 2..52
+    parameter integer B_W = 34,         // width of b (bit); legal: 2..52
+    // extra registers between leaf and adder tree (clock); legal: >= 0
     parameter integer PRODUCT_REGS = 0
 ) (
-    input  wire               clk,
-    input  wire [    A_W-1:0] a,
-    input  wire [    B_W-1:0] b,
-    output wire [A_W+B_W-1:0] p
+    input  wire               clk,  // clock, rising edge
+    input  wire [    A_W-1:0] a,    // factor, signed
+    input  wire [    B_W-1:0] b,    // factor, signed
+    output wire [A_W+B_W-1:0] p     // product, signed
 );
 
   localparam integer P_W = A_W + B_W;

@@ -5,13 +5,20 @@
 //   throughput   one result per clock, never stalls
 //   numbers      v two's complement, x in the low bits; q unsigned, exact
 //   reset        none (data only)
+//   about        The error bounds need this norm of edges, of point differences and of the axis.
+//   numbers      Exact: an absolute value is at most 2^(V_W-1), which V_W unsigned bits hold, and
+//                three of them are below 2^(V_W+1).
+//   why          The 1-norm needs adders only. Euclid's norm would need multipliers, and the bounds
+//                that the certainty uses are bounds in the 1-norm anyway. An absolute value would
+//                be an addition before the sum. Here the first clock takes the ones' complement of
+//                what is negative, which is |v| - 1, and the missing ones go as carries into the
+//                sums of the second clock: one addition per clock.
 module cchip_norm1 #(
-    // width of a component, bit, >= 2
-    parameter integer V_W = 17
+    parameter integer V_W = 17  // width of a component (bit); legal: >= 2
 ) (
-    input  wire             clk,
-    input  wire [3*V_W-1:0] v,
-    output wire [    V_W:0] q
+    input  wire             clk,  // clock, rising edge
+    input  wire [3*V_W-1:0] v,    // vector, x in the low bits, components signed
+    output wire [    V_W:0] q     // norm, unsigned
 );
 
   // ---- clock 1: bits inverted if negative: |v| of v >= 0, |v| - 1 of v < 0

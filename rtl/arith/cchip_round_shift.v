@@ -9,21 +9,22 @@
 //   lost         d is no multiple of 2^(BASE + s): q is not exact
 //   cuts         every path
 //   reset        none (data only)
+//   numbers      A value halfway between two others becomes the greater one.
+//   inside       Two barrel shifters that keep one bit below the point, and a flag for what falls
+//                off behind it; the last clock adds that bit.
+//   why          floor(x + 1/2) is the truncated value and the highest bit that was cut, so no
+//                constant that depends on s has to be added before the shift.
 module cchip_round_shift #(
-    // width of d, bit, 2..64
-    parameter integer D_W = 56,
-    // bits that are cut for every s, 0..D_W - 1
-    parameter integer BASE = 29,
-    // greatest s, 2..63
-    parameter integer SHIFT_MAX = 27,
-    // width of q, bit, 1..D_W - BASE + 1
-    parameter integer Q_W = 27
+    parameter integer D_W = 56,        // width of d (bit); legal: 2..64
+    parameter integer BASE = 29,       // bits that are cut for every s; legal: 0..D_W - 1
+    parameter integer SHIFT_MAX = 27,  // greatest s (bit); legal: 2..63
+    parameter integer Q_W = 27         // width of q (bit); legal: 1..D_W - BASE + 1
 ) (
-    input  wire                           clk,
-    input  wire [                D_W-1:0] d,
-    input  wire [$clog2(SHIFT_MAX+1)-1:0] s,
-    output wire [                Q_W-1:0] q,
-    output wire                           lost
+    input  wire                           clk,  // clock, rising edge
+    input  wire [                D_W-1:0] d,    // signed
+    input  wire [$clog2(SHIFT_MAX+1)-1:0] s,    // bits that are cut beside BASE
+    output wire [                Q_W-1:0] q,    // signed, modulo 2^Q_W
+    output wire                           lost  // d is no multiple of 2^(BASE + s)
 );
 
   localparam integer SHIFT_W = $clog2(SHIFT_MAX + 1);

@@ -9,16 +9,24 @@
 //                as model::sort_children names them
 //   cuts         every path
 //   reset        none
+//   timing       A child of A on every clock. m_a comes one clock, m_row 7 clocks after s_a.
+//   numbers      Planes as cchip_bv_compare takes them. The best is the child pair that waits with
+//                the greatest key, the first of equals.
+//   inside       cchip_bv_compare, registers, a comparison of two keys.
+//   why          Cells in a row need no multiplexer in front of the comparators, and what they find
+//                for a child of A is put together on the way.
 module cchip_bv_cell (
-    input  wire         clk,
-    // a child of B, held from the next clock on
-    input  wire         load,
-    input  wire [335:0] b,      // {number, inner, counts, planes}
-    // a child of A
-    input  wire [334:0] s_a,    // {near, inner, counts, planes}
-    output wire [334:0] m_a,
+    input  wire         clk,    // clock, rising edge
+    input  wire         load,   // b is held from the next clock on
+    input  wire [335:0] b,      // a child of B: {number, inner, counts, planes}
+    // a child of A: {near, inner, counts, planes}; near: it counts as overlapping, with key 0,
+    // regardless of its planes
+    input  wire [334:0] s_a,
+    output wire [334:0] m_a,    // the same, a clock later
+    // 6 clocks after s_a: what the cells before have found for it, {key and number of the best,
+    // strong, leaves, waiting}
     input  wire [ 17:0] s_row,
-    output wire [ 17:0] m_row
+    output wire [ 17:0] m_row   // 7 clocks after s_a: the same with this cell's child pair
 );
 
   // ---- clock 0

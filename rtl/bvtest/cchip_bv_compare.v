@@ -9,12 +9,21 @@
 //   cuts         every path
 //   reset        none
 // Bit for bit model::test_boxes.
+//   about        Whether a child of A and a child of B are separated, and if not by how little they
+//                overlap.
+//   inside       26 subtracters. The least of 26 keys is found from the highest bit on: those with
+//                a 0 stay, if there are any.
+//   why          The key only orders the work, so four bits are enough. Comparing the overlap in
+//                all directions instead of the three axes saves 5 to 12 % of the steps of a query
+//                (study of the broad phase).
 module cchip_bv_compare (
-    input  wire         clk,
-    input  wire [331:0] a,          // of 3 axes, then of 10 diagonals: {lower, upper}
-    input  wire [331:0] b,
-    output wire         separated,
-    output wire [  3:0] key         // if not separated
+    input  wire         clk,        // clock, rising edge
+    // planes of a child of A: of 3 axes, 24 bits each, then of 10 diagonals, 26 bits each: {lower,
+    // upper}
+    input  wire [331:0] a,
+    input  wire [331:0] b,          // planes of a child of B
+    output wire         separated,  // 2 clocks later: the intervals of one direction are disjoint
+    output wire [  3:0] key  // 6 clocks later: least overlap, for pairs that are not separated
 );
 
   // ---- clock 0: how far each upper plane is above the other's lower one

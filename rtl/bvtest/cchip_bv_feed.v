@@ -14,47 +14,61 @@
 //   cuts         every path but s_valid to s_soon, and the context to row_context0, which a block
 //                RAM takes
 //   reset        drops the node pairs
+//   ports        A number in a name: clocks after the first one of its node pair; what belongs to a
+//                child comes that much later again as the child has a position, 0..3.
+//   timing       A node pair of at most three children on each side that count takes three clocks,
+//                any other four; s_ready, a register, is high on the last one. Lines are read on
+//                all of these clocks.
+//   inside       Two cchip_block_ram of 16 node pairs, written four words at once, for the children
+//                of A and of B; one for tags. A chain of registers carries the first and the last
+//                clock of each node pair.
+//   why          cchip_bv_offset needs eight clocks before the lanes can start. Children that wait
+//                in block RAM cost no flip-flops, and since its port for writing is four words
+//                wide, no multiplexers.
 module cchip_bv_feed #(
-    // queries at work, 2, 4, 8 or 16
+    // queries at work, each with a pose (query); legal: 2, 4, 8, 16
     parameter integer QUERIES = 16,
-    // width of the tag, bit
-    parameter integer TAG_W = 5
+    parameter integer TAG_W = 5      // width of the tag (bit); legal: >= 1
 ) (
-    input  wire                       clk,
-    input  wire                       rst,
-    // a node pair; s_soon tells of s_ready a clock ahead
-    input  wire                       s_valid,
+    input  wire                       clk,            // clock, rising edge
+    input  wire                       rst,            // synchronous reset, active high
+    // ---- a node pair; s_soon tells of s_ready a clock ahead
+    input  wire                       s_valid,        // a node pair
+    // on the last of its clocks; all that belongs to it stays until then
     output wire                       s_ready,
-    output wire                       s_soon,
-    input  wire [          TAG_W-1:0] s_tag,
-    input  wire [$clog2(QUERIES)-1:0] s_context,
+    output wire                       s_soon,         // s_ready on the next clock
+    input  wire [          TAG_W-1:0] s_tag,  // any number, which comes back with the verdict
+    input  wire [$clog2(QUERIES)-1:0] s_context,      // query whose pose relates the two
+    // half of the line of the node of A (image.md, docs/hardware/image.md, "Inner node"): the lower
+    // one on the first clock of a node pair, the upper one on the second
     input  wire [              255:0] s_a,
-    input  wire [              255:0] s_b,
+    input  wire [              255:0] s_b,            // the same of the node of B
+    // children of A that count; bits beyond its children are ignored
     input  wire [                3:0] s_a_children,
-    input  wire [                3:0] s_b_children,
-    // for the pose and cchip_bv_offset
-    output wire [$clog2(QUERIES)-1:0] row_context0,
-    output wire [                1:0] row0,
-    output wire                       start2,
-    output wire [               53:0] a_origin2,    // for three clocks
-    output wire [                4:0] a_step2,
-    output wire [               53:0] b_origin2,
-    output wire [                4:0] b_step2,
-    output wire [$clog2(QUERIES)-1:0] lane_context8,
-    // for the lanes: one child after the other
-    output wire [              101:0] a_child10,
-    output wire [                3:0] a_about10,    // {number, inner, counts}
-    output wire                       a_coarse11,
-    output wire [              101:0] b_child13,
-    output wire [                3:0] b_about13,
-    output wire                       b_coarse13,
-    // for the choice
-    output wire                       first18,
-    output wire                       last18,
-    output wire                       first29,
-    output wire                       last30,
-    output wire [          TAG_W-1:0] tag30,        // with last30
-    output wire [                4:0] tests30
+    input  wire [                3:0] s_b_children,   // the same of B
+    // ---- for the pose and cchip_bv_offset
+    output wire [$clog2(QUERIES)-1:0] row_context0,   // s_context
+    output wire [                1:0] row0,           // row of M, 0, 1, 2
+    output wire                       start2,  // first clock of a node pair for cchip_bv_offset
+    output wire [               53:0] a_origin2,      // origin of A's node, for three clocks
+    output wire [                4:0] a_step2,        // its step
+    output wire [               53:0] b_origin2,      // origin of B's node
+    output wire [                4:0] b_step2,        // its step
+    output wire [$clog2(QUERIES)-1:0] lane_context8,  // s_context, later
+    // ---- for the lanes: one child after the other
+    output wire [              101:0] a_child10,      // a child of A, as it is stored
+    output wire [                3:0] a_about10,      // {number, inner, counts}
+    output wire                       a_coarse11,     // its node's cut exponent is 3
+    output wire [              101:0] b_child13,      // a child of B
+    output wire [                3:0] b_about13,      // {number, inner, counts}
+    output wire                       b_coarse13,     // its node's cut exponent is 3
+    // ---- for the choice
+    output wire                       first18,        // first clock of a node pair, later
+    output wire                       last18,         // last clock of a node pair, later
+    output wire                       first29,        // first clock, later
+    output wire                       last30,         // last clock, later: the clock of the verdict
+    output wire [          TAG_W-1:0] tag30,          // with last30: tag of that node pair
+    output wire [                4:0] tests30         // with last30: child pairs that count
 );
 
   localparam integer CONTEXT_W = $clog2(QUERIES);

@@ -13,21 +13,27 @@
 //   reset        none
 // Bit for bit model::planes_of_a (docs/hardware/image.md, "Box test").
 module cchip_bv_lane_a (
-    input  wire         clk,
-    // clock 0
-    input  wire [101:0] child,           // as stored in its node: box, face cuts, corner cuts
-    input  wire [  1:0] scale,           // grid step / step of A: 1, 4, 16; 3: the box is a point
-    // clock 1
-    input  wire         coarse,          // cut exponent of the node is 3, not 2
-    input  wire [ 90:0] pose_select,     // of 13 {reversed, corner[2], reversed, face[3]}
-    // clock 2
-    input  wire [170:0] pose_m,          // M, 17 fraction bits; row 0 first, -1 and 1 included
-    input  wire [389:0] pose_magnitude,  // |m| of 13 directions, 9 fraction bits, below 2
-    input  wire [181:0] pose_factor,     // {c 2^7, (b - c) 2^6} of 13 directions, 7 bits each
-    // clock 4
-    input  wire [ 50:0] offset,          // M o_A + t - o_B, 6 fraction bits
-    // clock 9
-    output wire [331:0] planes           // of 3 axes, then of 10 diagonals: {lower, upper}
+    input  wire         clk,             // clock, rising edge
+    // ---- clock 0
+    // volume of the child as its node stores it: 6 box corners of 7 bits, 12 face cuts and 8 corner
+    // cuts of 3 bits
+    input  wire [101:0] child,
+    // clock 0: logarithm to base 4 of the grid's step in steps of A, 0..2; 3: the box counts as a
+    // point
+    input  wire [  1:0] scale,
+    input  wire         coarse,          // clock 1: the node's cut exponent is 3 instead of 2
+    // clock 1: of each direction which cuts apply: {corner reversed, corner, face reversed, face}
+    input  wire [ 90:0] pose_select,
+    input  wire [170:0] pose_m,          // clock 2: M, row by row, 17 fraction bits, -1..1
+    // clock 2: the magnitudes of m = M^T d of each direction, 9 fraction bits; below 2
+    input  wire [389:0] pose_magnitude,
+    // clock 2: of each direction {c, 7 fraction bits; b - c, 6 fraction bits}
+    input  wire [181:0] pose_factor,
+    // clock 4: M o_A + t - o_B in half steps of the grid, 6 fraction bits
+    input  wire [ 50:0] offset,
+    // clock 9: planes of 3 axes, 24 bits each, then of 10 diagonals, 26 bits each: {lower, upper};
+    // directions in the order of image.md, docs/hardware/image.md
+    output wire [331:0] planes
 );
 
   // The clocks below are counted for a leaf of two.

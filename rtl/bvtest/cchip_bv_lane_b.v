@@ -10,16 +10,23 @@
 //   cuts         every path
 //   reset        none
 // Bit for bit model::planes_of_b (docs/hardware/image.md, "Box test").
+//   numbers      The widths hold every sum. Cuts count up to scale 2.
+//   inside       Shifters for the six corners, 4 + 2 adders a face diagonal, 2 + 2 a cube diagonal.
+//                No multiplier.
+//   why          The slack is added to the corners: a sum over two or three of them then has two or
+//                three times the slack, as it must.
 module cchip_bv_lane_b (
-    input  wire         clk,
-    // clock 0
-    input  wire [101:0] child,   // as stored in its node: box, face cuts, corner cuts
-    input  wire [  2:0] scale,   // log2 (grid step / step of B) + 1, 0..6; 7: the box is a point
-    input  wire         coarse,  // cut exponent of the node is 3, not 2
-    // clock 1
-    input  wire [  7:0] slack,   // quarters of a half step
-    // clock 5
-    output wire [331:0] planes   // of 3 axes, then of 10 diagonals: {lower, upper}
+    input  wire         clk,     // clock, rising edge
+    // ---- clock 0
+    input  wire [101:0] child,   // volume of the child as its node stores it
+    // clock 0: logarithm to base 2 of the grid's step in half steps of B, 0..6; 7: the box counts
+    // as a point
+    input  wire [  2:0] scale,
+    input  wire         coarse,  // clock 0: the node's cut exponent is 3 instead of 2
+    input  wire [  7:0] slack,   // clock 1: slack of the node pair, quarters of a half step
+    // clock 5: planes of 3 axes, 24 bits each, then of 10 diagonals, 26 bits each: {lower, upper};
+    // directions in the order of image.md, docs/hardware/image.md
+    output wire [331:0] planes
 );
 
   // ---- clock 0: corners on the grid, and cuts by their exponent. Cuts count up to scale 2

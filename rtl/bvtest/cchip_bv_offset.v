@@ -12,23 +12,42 @@
 //   cuts         every path
 //   reset        none: a start that is not used does no harm
 // Bit for bit model::grid_of (docs/hardware/image.md, "Box test").
+//   timing       Clocks count from start. Origins stay for the three clocks from start on, in which
+//                the rows of M and t come one after the other; steps, shift and epsilon come with
+//                start. Each output stays from its clock on until that of the next node pair.
+//                cchip_bv_pose gives the rows.
+//   numbers      The shifts are split. With s the lesser of the grid's step and 7, M o_A is shifted
+//                down and t - o_B up to 2^(s - 31), and their sum down to the grid. Floors of
+//                floors are the floor.
+//   inside       Three cchip_mul18, one axis after the other. An entry of M that is 1 is treated as
+//                in cchip_bv_lane_a.
+//   why          The lanes take a child on every clock, so a node pair has four clocks and one set
+//                of multipliers serves the three axes. Shifted as it is, no sum is wider than 39
+//                bits for any units of the two objects.
 module cchip_bv_offset (
-    input  wire         clk,
-    input  wire         start,
-    input  wire [ 53:0] a_origin,  // 2^-18
-    input  wire [  4:0] a_step,    // a step is 2^(a_step - 24)
-    input  wire [ 53:0] b_origin,
-    input  wire [  4:0] b_step,
-    input  wire [ 56:0] row_m,     // M, 17 fraction bits: row 0 with start, then 1, 2
-    input  wire [ 28:0] row_t,     // t, 24 fraction bits, likewise
+    input  wire         clk,       // clock, rising edge
+    input  wire         start,     // a node pair; at the earliest 3 clocks after the last one
+    input  wire [ 53:0] a_origin,  // origin of A's node, 2^-18
+    input  wire [  4:0] a_step,    // its step is 2^(a_step - 24)
+    input  wire [ 53:0] b_origin,  // origin of B's node
+    input  wire [  4:0] b_step,    // its step
+    input  wire [ 56:0] row_m,     // a row of M, 17 fraction bits: row 0 with start, then 1 and 2
+    input  wire [ 28:0] row_t,     // t of the same axis, 24 fraction bits
     input  wire [  3:0] shift,     // of the query: A's unit is 2^-shift of B's
-    input  wire [  6:0] epsilon,   // 2^-24
-    output wire [  1:0] a_scale,   // as cchip_bv_lane_a takes it
-    output wire [  2:0] b_scale,   // as cchip_bv_lane_b takes it
-    output wire [  7:0] slack,     // quarters of a half step
+    input  wire [  6:0] epsilon,   // bound on the error of a position that M and t give, 2^-24
+    // from clock 5: logarithm to base 4 of the grid's step in steps of A, 0..2; 3: A's boxes count
+    // as points
+    output wire [  1:0] a_scale,
+    // from clock 5: logarithm to base 2 of the grid's step in half steps of B, 0..6; 7: B's boxes
+    // count as points
+    output wire [  2:0] b_scale,
+    output wire [  7:0] slack,     // from clock 9: slack, quarters of a half step
+    // from clock 12: M o_A + t - o_B, half steps of the grid, 6 fraction bits
     output wire [ 50:0] offset,
-    output wire         is_far,    // separated by the offset alone
-    output wire         is_near    // the slack does not fit: nothing is separated
+    // from clock 12: the offset does not fit in its 17 bits, every child is separated
+    output wire         is_far,
+    // from clock 12: the slack does not fit in 8 bits, nothing is separated
+    output wire         is_near
 );
 
   // The clocks below are counted for a leaf of two.

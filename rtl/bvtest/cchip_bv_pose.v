@@ -10,36 +10,47 @@
 //                the 13 directions side by side for cchip_bv_lane_a
 //   cuts         every path
 //   reset        drops the pose at work, keeps those in memory
+//   timing       A pose every 13 clocks; m_pose_valid 21 clocks after it was taken. What is read
+//                while it is written is any value.
+//   numbers      Those of cchip_pose_setup.
+//   inside       cchip_pose_setup and cchip_block_ram: 97 bits for each row, 171 for M, 51 for each
+//                direction.
+//   why          cchip_bv_offset works on one axis after the other, so it gets the rows so: no
+//                multiplexers. cchip_bv_lane_a needs all 13 directions at once, at two clocks; the
+//                memories are read at these clocks, and no register waits.
 module cchip_bv_pose #(
-    // queries at work, 2, 4, 8 or 16
-    parameter integer QUERIES = 16
+    parameter integer QUERIES = 16  // queries at work, each with a pose (query); legal: 2, 4, 8, 16
 ) (
-    input  wire                       clk,
-    input  wire                       rst,
-    // a pose, as cchip_pose_setup takes it
-    input  wire                       s_pose_valid,
-    output wire                       s_pose_ready,
-    input  wire [$clog2(QUERIES)-1:0] s_pose_context,
+    input  wire                       clk,             // clock, rising edge
+    input  wire                       rst,             // synchronous reset, active high
+    // ---- a pose, as cchip_pose_setup takes it
+    input  wire                       s_pose_valid,    // the pose of a query
+    output wire                       s_pose_ready,    // it is taken
+    input  wire [$clog2(QUERIES)-1:0] s_pose_context,  // the query's number
+    // M, 30 fraction bits, row by row; magnitudes at most 1
     input  wire [              287:0] s_pose_m,
-    input  wire [              107:0] s_pose_t,
-    input  wire [                3:0] s_pose_shift,
+    input  wire [              107:0] s_pose_t,        // t, 32 fraction bits
+    input  wire [                3:0] s_pose_shift,    // the map is M 2^-shift
+    // bound on the error of a position that the query's map gives, 2^-38
     input  wire [               11:0] s_pose_error,
-    // it is in memory
+    // a pose is in memory; node pairs of it may come from this clock on
     output wire                       m_pose_valid,
-    output wire [$clog2(QUERIES)-1:0] m_pose_context,
-    // for cchip_bv_offset
-    input  wire [$clog2(QUERIES)-1:0] row_context,
-    input  wire [                1:0] row,             // 0, 1, 2
-    output wire [               56:0] row_m,
-    output wire [               28:0] row_t,
-    output wire [                3:0] shift,
+    output wire [$clog2(QUERIES)-1:0] m_pose_context,  // whose
+    // ---- for cchip_bv_offset
+    input  wire [$clog2(QUERIES)-1:0] row_context,     // query
+    input  wire [                1:0] row,             // axis, 0, 1, 2
+    output wire [               56:0] row_m,  // 2 clocks later: that row of M, 17 fraction bits
+    output wire [               28:0] row_t,           // t, 24 fraction bits
+    output wire [                3:0] shift,           // the map is M 2^-shift
+    // bound on the error of a position that M and t give, 2^-24
     output wire [                6:0] epsilon,
-    // for cchip_bv_lane_a
-    input  wire [$clog2(QUERIES)-1:0] lane_context,
+    // ---- for cchip_bv_lane_a
+    input  wire [$clog2(QUERIES)-1:0] lane_context,    // query
+    // 3 clocks later: of 13 directions, as cchip_bv_lane_a takes it
     output wire [               90:0] pose_select,
-    output wire [              170:0] pose_m,
-    output wire [              389:0] pose_magnitude,
-    output wire [              181:0] pose_factor
+    output wire [              170:0] pose_m,          // 4 clocks later: M
+    output wire [              389:0] pose_magnitude,  // 4 clocks later: of 13 directions
+    output wire [              181:0] pose_factor      // 4 clocks later: of 13 directions
 );
 
   localparam integer CONTEXT_W = $clog2(QUERIES);

@@ -12,43 +12,53 @@
 //   reset        drops poses and node pairs at work; poses in memory stay
 // Bit for bit model::test_boxes and model::sort_children (docs/hardware/image.md, "Box test").
 module cchip_bv_unit #(
-    // queries at work, each with a pose: 2, 4, 8 or 16
+    // queries at work, each with a pose (query); legal: 2, 4, 8, 16
     parameter integer QUERIES = 16,
-    // width of the tag, bit, >= 1
-    parameter integer TAG_W = 5
+    parameter integer TAG_W = 5      // width of the tag (bit); legal: >= 1
 ) (
-    input  wire                       clk,
-    input  wire                       rst,
-    // the pose of a query
-    input  wire                       s_pose_valid,
-    output wire                       s_pose_ready,
-    input  wire [$clog2(QUERIES)-1:0] s_pose_context,
-    input  wire [              287:0] s_pose_m,        // as cchip_pose_setup takes them
-    input  wire [              107:0] s_pose_t,
-    input  wire [                3:0] s_pose_shift,
+    input  wire                       clk,             // clock, rising edge
+    input  wire                       rst,             // synchronous reset, active high
+    input  wire                       s_pose_valid,    // the pose of a query
+    output wire                       s_pose_ready,    // it is taken
+    input  wire [$clog2(QUERIES)-1:0] s_pose_context,  // the query's number
+    // M, 30 fraction bits, row by row; magnitudes at most 1
+    input  wire [              287:0] s_pose_m,
+    input  wire [              107:0] s_pose_t,        // t, 32 fraction bits
+    input  wire [                3:0] s_pose_shift,    // the map is M 2^-shift
+    // bound on the error of a position that the query's map gives, 2^-38
     input  wire [               11:0] s_pose_error,
-    output wire                       m_pose_valid,    // node pairs of it may come from now on
-    output wire [$clog2(QUERIES)-1:0] m_pose_context,
-    // a node pair: lines of inner nodes, the lower halves on its first clock, the upper ones on the
-    // second; and which children count. All else stays until s_ready, which s_soon tells a clock
-    // ahead
-    input  wire                       s_valid,
+    // a pose is in memory; node pairs of it may come from this clock on
+    output wire                       m_pose_valid,
+    output wire [$clog2(QUERIES)-1:0] m_pose_context,  // whose
+    // ---- a node pair: lines of inner nodes, the lower halves on its first clock, the upper ones
+    //      on the second; and which children count. All else stays until s_ready, which s_soon
+    //      tells a clock ahead
+    input  wire                       s_valid,         // a node pair
+    // on the last of its clocks; all that belongs to it stays until then
     output wire                       s_ready,
-    output wire                       s_soon,
-    input  wire [          TAG_W-1:0] s_tag,
-    input  wire [$clog2(QUERIES)-1:0] s_context,
+    output wire                       s_soon,          // s_ready on the next clock
+    input  wire [          TAG_W-1:0] s_tag,  // any number, which comes back with the verdict
+    input  wire [$clog2(QUERIES)-1:0] s_context,       // query whose pose relates the two
+    // half of the line of the node of A (image.md, docs/hardware/image.md, "Inner node"): the lower
+    // one on the first clock of a node pair, the upper one on the second
     input  wire [              255:0] s_a,
-    input  wire [              255:0] s_b,
+    input  wire [              255:0] s_b,             // the same of the node of B
+    // children of A that count; bits beyond its children are ignored
     input  wire [                3:0] s_a_children,
-    input  wire [                3:0] s_b_children,
-    // its verdict; bit 4 i + j is child i of A with child j of B
+    input  wire [                3:0] s_b_children,    // the same of B
+    // ---- its verdict; bit 4 i + j is child i of A with child j of B
+    // a verdict, in the order of the node pairs; nothing waits for a receiver
     output wire                       m_valid,
-    output wire [          TAG_W-1:0] m_tag,
-    output wire [               15:0] m_waiting,       // overlap, not both are leaves
-    output wire [               15:0] m_leaves,        // overlap, both are leaves
-    output wire [               15:0] m_strong,        // waiting, with a key of 8 or more
-    output wire [                3:0] m_best,          // waiting, first of the greatest key
-    output wire [                4:0] m_tests          // child pairs compared
+    output wire [          TAG_W-1:0] m_tag,           // of its node pair
+    // bit 4 i + j, child i of A and child j of B: both count, they overlap, and at least one is an
+    // inner node
+    output wire [               15:0] m_waiting,
+    output wire [               15:0] m_leaves,  // both count, they overlap, and both are leaves
+    output wire [               15:0] m_strong,  // of m_waiting, those with a key of 8 or more
+    // of m_waiting, the number of the greatest key, the first of equals; any number if there is
+    // none
+    output wire [                3:0] m_best,
+    output wire [                4:0] m_tests          // child pairs compared, 0..16
 );
 
   localparam integer CONTEXT_W = $clog2(QUERIES);

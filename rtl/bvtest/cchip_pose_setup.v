@@ -11,26 +11,39 @@
 //   cuts         every path
 //   reset        drops the query at work
 // Bit for bit model::set_up (docs/hardware/image.md).
+//   about        M rounded, and how each direction of B splits into directions of A.
+//   timing       A query every 13 clocks. pose_m, pose_t and epsilon from the clock after the query
+//                was taken to the one on which s_ready is 1 again; the first direction 7 clocks
+//                after it, then one on every clock. Nothing waits for a receiver.
+//   numbers      Of equal magnitudes the first one counts as the greater. Queries as a descriptor
+//                may hold them: |m| below 2, b + c at most 2 + 2^-5 (docs/hardware/image.md).
+//   inside       Three sums of three, three comparisons of two magnitudes, selection.
+//   why          The face diagonal is that of the two greater components with their signs, the cube
+//                diagonal that of all three. So the split needs no search, and nothing of it is the
+//                host's work.
 module cchip_pose_setup (
-    input  wire         clk,
-    input  wire         rst,
-    // a query
-    input  wire         s_valid,
-    output wire         s_ready,
-    input  wire [287:0] s_m,         // M, 30 fraction bits, row by row; |M_ij| <= 1
-    input  wire [107:0] s_t,         // t, 32 fraction bits
-    input  wire [  3:0] s_shift,     // M is M 2^-shift
-    input  wire [ 11:0] s_error,     // bound on the error of a position, 2^-38
-    // its pose
-    output wire [170:0] pose_m,      // 17 fraction bits
-    output wire [ 86:0] pose_t,      // 24 fraction bits
-    output wire [  6:0] epsilon,     // bound on the error of a position that these give, 2^-24
-    // one direction after the other
-    output wire         m_valid,
-    output wire [  3:0] m_direction, // 0..12
-    output wire [  6:0] m_select,    // {corner reversed, corner, face reversed, face}
-    output wire [ 29:0] m_magnitude,
-    output wire [ 13:0] m_factor     // {c, b - c}
+    input  wire         clk,          // clock, rising edge
+    input  wire         rst,          // synchronous reset, active high
+    input  wire         s_valid,      // a query
+    output wire         s_ready,      // it is taken
+    input  wire [287:0] s_m,          // M, 30 fraction bits, row by row; magnitudes at most 1
+    input  wire [107:0] s_t,          // t, 32 fraction bits
+    input  wire [  3:0] s_shift,      // the map is M 2^-shift
+    // bound on the error of a position that the query's map gives, 2^-38
+    input  wire [ 11:0] s_error,
+    // ---- its pose
+    output wire [170:0] pose_m,       // M, row by row, 17 fraction bits
+    output wire [ 86:0] pose_t,       // t, 24 fraction bits
+    // bound on the error of a position that pose_m and pose_t give, 2^-24
+    output wire [  6:0] epsilon,
+    // ---- one direction after the other
+    output wire         m_valid,      // a direction
+    // its number, 0..12, in the order of image.md, docs/hardware/image.md
+    output wire [  3:0] m_direction,
+    // {corner reversed, corner, face reversed, face} as cchip_bv_lane_a takes them
+    output wire [  6:0] m_select,
+    output wire [ 29:0] m_magnitude,  // magnitudes of m, 9 fraction bits
+    output wire [ 13:0] m_factor      // {c, 7 fraction bits; b - c, 6 fraction bits}
 );
 
   // Components of the directions, {negative, not zero} each, component 0 in the lowest bits

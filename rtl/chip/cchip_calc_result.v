@@ -22,52 +22,60 @@
 //                or one and the pool's
 //   reset        every number is free
 module cchip_calc_result #(
-    // leaf pairs between leaf feed and record: 4, 8 ... 256
-    parameter integer LEAVES = 64,
-    // width of a context's number, bit
-    parameter integer CONTEXT_W = 4,
-    // leaf pairs with the traversal, or judged and without their records: 2..64
+    parameter integer LEAVES = 64,  // leaf pairs between leaf feed and record; legal: 4, 8 ... 256
+    parameter integer CONTEXT_W = 4,  // width of a context's number (bit); legal: 1 or more
+    // leaf pairs with the traversal, or judged and without their records; legal: 2..64
     parameter integer JUDGED = 16
 ) (
-    input  wire                                      clk,
-    input  wire                                      rst,
-    // a leaf pair begins
-    input  wire                                      s_begin_valid,
-    output wire                                      s_begin_ready,
-    input  wire [                     CONTEXT_W-1:0] s_begin_context,
-    input  wire [                               1:0] s_begin_epoch,
-    input  wire [                               1:0] s_begin_pairs,      // primitive pairs - 1
+    input  wire                                      clk,                // clock, rising edge
+    input  wire                                      rst,  // synchronous reset, active high
+    input  wire                                      s_begin_valid,      // a leaf pair begins
+    output wire                                      s_begin_ready,      // it gets m_number
+    input  wire [                     CONTEXT_W-1:0] s_begin_context,    // context of its query
+    input  wire [                               1:0] s_begin_epoch,      // epoch of its query
+    input  wire [                               1:0] s_begin_pairs,      // its primitive pairs - 1
+    // number of the leaf pair that begins
     output wire [                $clog2(LEAVES)-1:0] m_number,
     // a leaf pair ends without primitive pairs
     input  wire                                      s_end_valid,
-    output wire                                      s_end_ready,
-    input  wire [                $clog2(LEAVES)-1:0] s_end_number,
-    input  wire [                     CONTEXT_W-1:0] s_end_context,
-    input  wire [                               1:0] s_end_epoch,
+    output wire                                      s_end_ready,        // taken
+    input  wire [                $clog2(LEAVES)-1:0] s_end_number,       // its number
+    input  wire [                     CONTEXT_W-1:0] s_end_context,      // context of its query
+    input  wire [                               1:0] s_end_epoch,        // epoch of its query
+    // QueryCode, docs/hardware/definitions.md with which its query ends
     input  wire [                  `CCHIP_END_W-1:0] s_end_code,
-    // the faces of a primitive pair, in the user's order; before its result
+    // ---- the faces of a primitive pair, in the user's order; before its result
+    // the faces of a primitive pair
     input  wire                                      s_faces_valid,
-    input  wire [                $clog2(LEAVES)+1:0] s_faces_pair,       // {number, 0..3}
-    input  wire [                              63:0] s_faces,            // {second, first object's}
-    // result of a primitive pair
-    input  wire                                      s_result_valid,
-    output wire                                      s_result_ready,
+    // {number of the leaf pair, which of its four}
+    input  wire [                $clog2(LEAVES)+1:0] s_faces_pair,
+    // {face of the user's second object, of the first}
+    input  wire [                              63:0] s_faces,
+    input  wire                                      s_result_valid,  // result of a primitive pair
+    output wire                                      s_result_ready,     // taken
+    // {number of the leaf pair, which of its four}
     input  wire [                $clog2(LEAVES)+1:0] s_result_pair,
+    // the primitives touch, or may do so
     input  wire                                      s_result_hit,
-    input  wire                                      s_result_definite,
-    // result of a leaf pair, to the traversal; its judgement; ends of queries
+    input  wire                                      s_result_definite,  // the answer is certain
+    // ---- result of a leaf pair, to the traversal; its judgement; ends of queries
+    // result of a leaf pair, to the traversal
     output wire                                      m_leaf_valid,
-    input  wire                                      m_leaf_ready,
-    output wire [                      CONTEXT_W+10:0] m_leaf_data,        // LEAF_RESULT
+    input  wire                                      m_leaf_ready,       // taken
+    // record LEAF_RESULT, docs/hardware/definitions.md
+    output wire [                      CONTEXT_W+10:0] m_leaf_data,
+    // judgement of the next result that the traversal took
     input  wire                                      s_judged_valid,
-    input  wire                                      s_judged_live,
-    input  wire [                              31:0] s_judged_tag,
-    input  wire                                      s_done_valid,
-    output wire                                      s_done_ready,
+    input  wire                                      s_judged_live,  // its query was still at work
+    input  wire [                              31:0] s_judged_tag,       // tag of the query
+    input  wire                                      s_done_valid,       // a query has ended
+    output wire                                      s_done_ready,       // taken
+    // record DONE_RECORD, docs/hardware/definitions.md
     input  wire [        `CCHIP_DONE_RECORD_W-1:0] s_done_data,
-    // records
-    output wire                                      m_record_valid,
-    input  wire                                      m_record_ready,
+    // ---- records
+    output wire                                      m_record_valid,     // a record
+    input  wire                                      m_record_ready,     // taken
+    // record PAIR_RECORD or DONE_RECORD, docs/hardware/definitions.md, phase 0
     output wire [        `CCHIP_PAIR_RECORD_W-1:0] m_record_data
 );
 

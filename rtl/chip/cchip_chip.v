@@ -18,130 +18,158 @@
 //   reset        rst resets registers and core, and must reset the bus too; hold it for 2 clocks or
 //                more
 module cchip_chip #(
-    // queries at once: 2, 4, 8 or 16
-    parameter integer QUERIES = 16,
-    // node pairs in flight
-    parameter integer PAIRS = 48,
-    // leaf pairs that are fetched at once; PAIRS + LEAVES is 8, 16, 32 or 64
+    parameter integer QUERIES = 16,  // queries at once (query); legal: 2, 4, 8, 16
+    parameter integer PAIRS = 48,  // node pairs in flight; legal: see cchip_traversal
+    // leaf pairs that are fetched at once; legal: PAIRS + LEAVES is 8, 16, 32 or 64
     parameter integer LEAVES = 16,
-    // entries of a query's stack: 8, 16, 32 or 64
-    parameter integer STACK = 64,
-    // entries of the queue of leaves, more than PAIRS
+    parameter integer STACK = 64,  // entries of a query's stack (entry); legal: 8, 16, 32, 64
+    // entries of the queue of leaves (entry); legal: over PAIRS, to 128
     parameter integer LEAF_DEPTH = 72,
-    // size of the cache, KiB: 4, 8 ... 1024
-    parameter integer CACHE_KB = 128,
-    // lines in flight from memory: 4, 8, 16 or 32
-    parameter integer MISSES = 32,
-    // ranges of lines to lock, 1..4
-    parameter integer LOCKS = 2,
-    // width of a coordinate on the grid, bit, 4..20
-    parameter integer COORD_W = 16,
-    // registers of the primitive test's stages (see cchip_primtest)
+    parameter integer CACHE_KB = 128,  // size of the cache (KiB); legal: 4, 8 ... 1024
+    parameter integer MISSES = 32,  // lines in flight from memory; legal: 4, 8, 16, 32
+    parameter integer LOCKS = 2,  // ranges of lines to lock; legal: 1..4
+    parameter integer COORD_W = 16,  // width of a coordinate on the grid (bit); legal: 4..20
+    // registers of the primitive test's stages (clock); legal: see cchip_primtest
     parameter integer SUBSTAGES = `CCHIP_SUBSTAGES_DEFAULT,
-    // clocks a vertex in the transform: 1 or 2
-    parameter integer PASSES = 1,
-    // primitive pairs of each kind that wait: 16, 32 ... 256
-    parameter integer QUEUE_DEPTH = 64,
-    // leaf pairs between leaf feed and record: 4, 8 ... 256
+    parameter integer PASSES = 1,  // a vertex in the transform (clock); legal: 1, 2
+    parameter integer QUEUE_DEPTH = 64,  // primitive pairs that wait; legal: 16, 32 ... 256
+    // leaf pairs between leaf feed and record; legal: 4, 8 ... 256
     parameter integer LEAF_NUMBERS = 64,
-    // slots of primitive tests, 1..4
-    parameter integer SLOTS = 1,
-    // 1: their modules are exchanged at run time
-    parameter integer SWAPS = 0,
-    // module of slot 0: 1 triangles, 2 triangle and quad, 3 quads; at power-up with SWAPS, or 0
+    parameter integer SLOTS = 1,  // slots of primitive tests; legal: 1..4
+    parameter integer SWAPS = 0,  // 1: their modules are exchanged at run time; legal: 0, 1
+    // module of slot 0: triangles, triangle and quad, quads; with SWAPS at power-up; legal: 1, 2,
+    // 3, with SWAPS 0, too
     parameter integer RM_ID = 3,
-    // of the others
-    parameter integer SLOT1_RM_ID = 1,
-    parameter integer SLOT2_RM_ID = 2,
-    parameter integer SLOT3_RM_ID = 1,
-    // configuration port with SWAPS: width, bit, 8 or 32; clocks a word; clocks of the reset
-    parameter integer CFG_W = 8,
-    parameter integer CFG_DIVIDER = 2,
+    parameter integer SLOT1_RM_ID = 1,                         // of slot 1 (module); legal: 0..3
+    parameter integer SLOT2_RM_ID = 2,                         // of slot 2 (module); legal: 0..3
+    parameter integer SLOT3_RM_ID = 1,                         // of slot 3 (module); legal: 0..3
+    parameter integer CFG_W = 8,  // width of the configuration port (bit); legal: 8, 32
+    parameter integer CFG_DIVIDER = 2,  // clocks per word of the port; legal: from 1 on
+    // reset on configuration (clock); legal: from 1 on
     parameter integer ROC_CYCLES = `CCHIP_ROC_CLOCKS_DEFAULT,
-    // 1: simulated reconfiguration (see cchip_pr_slot), and the start of its random numbers
+    // 1: simulated reconfiguration (see cchip_pr_slot); legal: 0, 1
     parameter integer SIMULATION = 0,
-    parameter integer SEED = 1,
-    // width of the data buses, bit: 128, 256 or 512
-    parameter integer DATA_W = 128,
-    // AxCACHE of reads and of writes, 0..15, AxPROT of both, 0..7
+    parameter integer SEED = 1,  // start of its random numbers; legal: any
+    parameter integer DATA_W = 128,  // width of the data buses (bit); legal: 128, 256, 512
+    // ARCACHE: 3 normal memory, 15 a coherent port; legal: 0..15
     parameter integer AXI_ARCACHE = 3,
+    // AWCACHE: 2 normal memory, 15 a coherent port; legal: 0..15
     parameter integer AXI_AWCACHE = 2,
-    parameter integer AXI_PROT = 0
+    parameter integer AXI_PROT = 0  // AxPROT: 0 secure, 2 non-secure; legal: 0..7
 ) (
-    input  wire                          clk,
-    input  wire                          rst,
-    // registers, AXI4-Lite
+    // ---- clock and reset
+    input  wire                          clk,                // clock, rising edge
+    input  wire                          rst,                // synchronous reset, active high
+    // ---- registers, AXI4-Lite
+    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     input  wire                          s_axil_awvalid,
+    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     output wire                          s_axil_awready,
+    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     input  wire [                  11:0] s_axil_awaddr,
+    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     input  wire [                   2:0] s_axil_awprot,
+    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     input  wire                          s_axil_wvalid,
+    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     output wire                          s_axil_wready,
+    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     input  wire [                  31:0] s_axil_wdata,
+    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     input  wire [                   3:0] s_axil_wstrb,
+    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     output wire                          s_axil_bvalid,
+    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     input  wire                          s_axil_bready,
+    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     output wire [                   1:0] s_axil_bresp,
+    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     input  wire                          s_axil_arvalid,
+    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     output wire                          s_axil_arready,
+    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     input  wire [                  11:0] s_axil_araddr,
+    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     input  wire [                   2:0] s_axil_arprot,
+    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     output wire                          s_axil_rvalid,
+    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     input  wire                          s_axil_rready,
+    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     output wire [                  31:0] s_axil_rdata,
+    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     output wire [                   1:0] s_axil_rresp,
+    // ---- interrupt
+    // interrupt: an event that is enabled; level, 0 for a clock after each write of
+    // interrupt_status
     output wire                          irq,
-    // memory, AXI4: images, queries, records
-    output wire                          m_axi_arvalid,
-    input  wire                          m_axi_arready,
-    output wire [      $clog2(MISSES):0] m_axi_arid,
-    output wire [                  63:0] m_axi_araddr,
-    output wire [                   7:0] m_axi_arlen,
-    output wire [                   2:0] m_axi_arsize,
-    output wire [                   1:0] m_axi_arburst,
-    output wire [                   3:0] m_axi_arcache,
-    output wire [                   2:0] m_axi_arprot,
-    input  wire                          m_axi_rvalid,
-    output wire                          m_axi_rready,
-    input  wire [      $clog2(MISSES):0] m_axi_rid,
-    input  wire [            DATA_W-1:0] m_axi_rdata,
-    input  wire [                   1:0] m_axi_rresp,
-    input  wire                          m_axi_rlast,
-    output wire                          m_axi_awvalid,
-    input  wire                          m_axi_awready,
-    output wire                          m_axi_awid,
-    output wire [                  63:0] m_axi_awaddr,
-    output wire [                   7:0] m_axi_awlen,
-    output wire [                   2:0] m_axi_awsize,
-    output wire [                   1:0] m_axi_awburst,
-    output wire [                   3:0] m_axi_awcache,
-    output wire [                   2:0] m_axi_awprot,
-    output wire                          m_axi_wvalid,
-    input  wire                          m_axi_wready,
-    output wire [            DATA_W-1:0] m_axi_wdata,
-    output wire [          DATA_W/8-1:0] m_axi_wstrb,
-    output wire                          m_axi_wlast,
-    input  wire                          m_axi_bvalid,
-    output wire                          m_axi_bready,
-    input  wire                          m_axi_bid,
-    input  wire [                   1:0] m_axi_bresp,
-    // configuration port of the device
-    output wire                          cfg_valid,
-    output wire [             CFG_W-1:0] cfg_data,
+    // ---- memory, AXI4 read: memory, AXI4: images, queries, records
+    output wire                          m_axi_arvalid,      // read address: valid
+    input  wire                          m_axi_arready,      // taken
+    output wire [      $clog2(MISSES):0] m_axi_arid,         // ID: {client, slot}
+    output wire [                  63:0] m_axi_araddr,       // address, a multiple of 64
+    output wire [                   7:0] m_axi_arlen,        // beats of a line - 1
+    output wire [                   2:0] m_axi_arsize,       // whole beats
+    output wire [                   1:0] m_axi_arburst,      // INCR
+    output wire [                   3:0] m_axi_arcache,      // normal, not cacheable, bufferable
+    output wire [                   2:0] m_axi_arprot,       // unprivileged, secure, data
+    input  wire                          m_axi_rvalid,       // read data: valid
+    output wire                          m_axi_rready,       // taken
+    input  wire [      $clog2(MISSES):0] m_axi_rid,          // ID
+    input  wire [            DATA_W-1:0] m_axi_rdata,        // data
+    input  wire [                   1:0] m_axi_rresp,        // response
+    input  wire                          m_axi_rlast,        // last beat
+    // ---- memory, AXI4 write
+    output wire                          m_axi_awvalid,      // write address: valid
+    input  wire                          m_axi_awready,      // taken
+    output wire                          m_axi_awid,         // 0
+    output wire [                  63:0] m_axi_awaddr,       // address, a multiple of the beat
+    output wire [                   7:0] m_axi_awlen,        // 0: one beat
+    output wire [                   2:0] m_axi_awsize,       // whole beats
+    output wire [                   1:0] m_axi_awburst,      // INCR
+    output wire [                   3:0] m_axi_awcache,  // normal, not cacheable, not bufferable
+    output wire [                   2:0] m_axi_awprot,       // unprivileged, secure, data
+    output wire                          m_axi_wvalid,       // write data: valid
+    input  wire                          m_axi_wready,       // taken
+    output wire [            DATA_W-1:0] m_axi_wdata,        // data
+    output wire [          DATA_W/8-1:0] m_axi_wstrb,        // the 16 bytes of a record
+    output wire                          m_axi_wlast,        // 1
+    input  wire                          m_axi_bvalid,       // response of a write: valid
+    output wire                          m_axi_bready,       // taken
+    input  wire                          m_axi_bid,          // 0
+    input  wire [                   1:0] m_axi_bresp,        // response
+    // ---- configuration port: configuration port of the device
+    output wire                          cfg_valid,  // a word is written to the configuration port
+    output wire [             CFG_W-1:0] cfg_data,           // the word
+    // the device reports an error of its configuration, from any clock; a level, or a pulse of at
+    // least two clocks of clk
     input  wire                          cfg_error,
-    // memory of the bitstreams, read only
+    // ---- memory of the bitstreams, AXI4 read: memory of the bitstreams, read only
+    // memory of the bitstreams: AXI4 read, address
     output wire                          m_axi_cfg_arvalid,
+    // memory of the bitstreams: AXI4 read, address
     input  wire                          m_axi_cfg_arready,
+    // memory of the bitstreams: AXI4 read, address, byte
     output wire [                  31:0] m_axi_cfg_araddr,
+    // memory of the bitstreams: AXI4 read, beats - 1, at most 15
     output wire [                   7:0] m_axi_cfg_arlen,
+    // memory of the bitstreams: AXI4 read, 2: 4 bytes per beat
     output wire [                   2:0] m_axi_cfg_arsize,
+    // memory of the bitstreams: AXI4 read, 1: INCR
     output wire [                   1:0] m_axi_cfg_arburst,
+    // memory of the bitstreams: AXI4 read, constant
     output wire [                   3:0] m_axi_cfg_arcache,
+    // memory of the bitstreams: AXI4 read, constant
     output wire [                   2:0] m_axi_cfg_arprot,
+    // memory of the bitstreams: AXI4 read, data
     input  wire                          m_axi_cfg_rvalid,
+    // memory of the bitstreams: AXI4 read, data
     output wire                          m_axi_cfg_rready,
+    // memory of the bitstreams: AXI4 read, data
     input  wire [                  31:0] m_axi_cfg_rdata,
+    // memory of the bitstreams: AXI4 read, response
     input  wire [                   1:0] m_axi_cfg_rresp,
+    // memory of the bitstreams: AXI4 read, last beat of the burst
     input  wire                          m_axi_cfg_rlast
 );
 

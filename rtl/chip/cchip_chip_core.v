@@ -29,153 +29,158 @@
 //                write_outstanding have been 0 for 16 clocks (cchip_soft_reset). Both act a clock
 //                later: hold rst for 2 clocks or more
 module cchip_chip_core #(
-    // queries at once: 2, 4, 8 or 16
-    parameter integer QUERIES = 16,
-    // node pairs in flight
-    parameter integer PAIRS = 48,
-    // leaf pairs that are fetched at once; PAIRS + LEAVES is 8, 16, 32 or 64
+    parameter integer QUERIES = 16,  // queries at once (query); legal: 2, 4, 8, 16
+    parameter integer PAIRS = 48,  // node pairs in flight; legal: see cchip_traversal
+    // leaf pairs that are fetched at once; legal: PAIRS + LEAVES is 8, 16, 32 or 64
     parameter integer LEAVES = 16,
-    // entries of a query's stack: 8, 16, 32 or 64
-    parameter integer STACK = 64,
-    // entries of the queue of leaves, more than PAIRS
+    parameter integer STACK = 64,  // entries of a query's stack (entry); legal: 8, 16, 32, 64
+    // entries of the queue of leaves (entry); legal: over PAIRS, to 128
     parameter integer LEAF_DEPTH = 72,
-    // size of the cache, KiB: 4, 8 ... 1024
-    parameter integer CACHE_KB = 128,
-    // lines in flight from memory: 4, 8, 16 or 32
-    parameter integer MISSES = 32,
-    // ranges of lines to lock, 1..4
-    parameter integer LOCKS = 2,
-    // width of a coordinate on the grid, bit, 4..20
-    parameter integer COORD_W = 16,
-    // registers of the primitive test's stages (see cchip_primtest)
+    parameter integer CACHE_KB = 128,  // size of the cache (KiB); legal: 4, 8 ... 1024
+    parameter integer MISSES = 32,  // lines in flight from memory; legal: 4, 8, 16, 32
+    parameter integer LOCKS = 2,  // ranges of lines to lock; legal: 1..4
+    parameter integer COORD_W = 16,  // width of a coordinate on the grid (bit); legal: 4..20
+    // registers of the primitive test's stages (clock); legal: see cchip_primtest
     parameter integer SUBSTAGES = `CCHIP_SUBSTAGES_DEFAULT,
-    // clocks a vertex in the transform: 1 or 2
-    parameter integer PASSES = 1,
-    // primitive pairs of each kind that wait: 16, 32 ... 256
-    parameter integer QUEUE_DEPTH = 64,
-    // leaf pairs between leaf feed and record: 4, 8 ... 256
+    parameter integer PASSES = 1,  // a vertex in the transform (clock); legal: 1, 2
+    parameter integer QUEUE_DEPTH = 64,  // primitive pairs that wait; legal: 16, 32 ... 256
+    // leaf pairs between leaf feed and record; legal: 4, 8 ... 256
     parameter integer LEAF_NUMBERS = 64,
-    // slots of primitive tests, 1..4
-    parameter integer SLOTS = 1,
-    // 1: their modules are exchanged at run time
-    parameter integer SWAPS = 0,
-    // module of slot 0: 1 triangles, 2 triangle and quad, 3 quads; at power-up with SWAPS, or 0
+    parameter integer SLOTS = 1,  // slots of primitive tests; legal: 1..4
+    parameter integer SWAPS = 0,  // 1: their modules are exchanged at run time; legal: 0, 1
+    // module of slot 0: triangles, triangle and quad, quads; with SWAPS at power-up; legal: 1, 2,
+    // 3, with SWAPS 0, too
     parameter integer RM_ID = 3,
-    // of the others
-    parameter integer SLOT1_RM_ID = 1,
-    parameter integer SLOT2_RM_ID = 2,
-    parameter integer SLOT3_RM_ID = 1,
-    // configuration port with SWAPS: width, bit, 8 or 32; clocks of the reset
-    parameter integer CFG_W = 8,
+    parameter integer SLOT1_RM_ID = 1,                         // of slot 1 (module); legal: 0..3
+    parameter integer SLOT2_RM_ID = 2,                         // of slot 2 (module); legal: 0..3
+    parameter integer SLOT3_RM_ID = 1,                         // of slot 3 (module); legal: 0..3
+    parameter integer CFG_W = 8,  // width of the configuration port (bit); legal: 8, 32
+    // reset on configuration (clock); legal: from 1 on
     parameter integer ROC_CYCLES = `CCHIP_ROC_CLOCKS_DEFAULT,
-    // 1: simulated reconfiguration (see cchip_pr_slot), and the start of its random numbers
+    // 1: simulated reconfiguration (see cchip_pr_slot); legal: 0, 1
     parameter integer SIMULATION = 0,
-    parameter integer SEED = 1,
-    // width of the data buses, bit: 128, 256 or 512
-    parameter integer DATA_W = 128,
-    // AxCACHE of reads and of writes, 0..15, AxPROT of both, 0..7
+    parameter integer SEED = 1,  // start of its random numbers; legal: any
+    parameter integer DATA_W = 128,  // width of the data buses (bit); legal: 128, 256, 512
+    // ARCACHE: 3 normal memory, 15 a coherent port; legal: 0..15
     parameter integer AXI_ARCACHE = 3,
+    // AWCACHE: 2 normal memory, 15 a coherent port; legal: 0..15
     parameter integer AXI_AWCACHE = 2,
-    parameter integer AXI_PROT = 0
+    parameter integer AXI_PROT = 0  // AxPROT: 0 secure, 2 non-secure; legal: 0..7
 ) (
-    input  wire                           clk,
-    input  wire                           rst,
-    input  wire                           core_rst,          // resets all but the bus masters
-    // limits (cchip_traversal, cchip_axi_read)
+    input  wire                           clk,                 // clock, rising edge
+    input  wire                           rst,                 // synchronous reset, active high
+    input  wire                           core_rst,            // resets all but the bus masters
+    // ---- limits (cchip_traversal, cchip_axi_read)
+    // node pairs of a query that may be in flight, 0..7; 0 counts as 1; half of it for a query for
+    // the first hit with leaf pairs out
     input  wire [                    2:0] pairs_each,
+    // node pairs after which a query ends with code steps, 0..2^32 - 1
     input  wire [                   31:0] step_limit,
+    // open pairs after which a query for the first hit ends with code host, 0..255; 0 counts as 1
     input  wire [                    7:0] open_limit,
-    input  wire [                   31:0] memory_limit,      // clocks
-    // rings (cchip_query_ring, cchip_record_ring)
-    input  wire                           enable,
-    input  wire [                   57:0] query_base,        // address / 64
-    input  wire [                    3:0] query_size_log2,
-    input  wire [                   15:0] query_producer,
-    output wire [                   15:0] query_consumer,
+    // longest read or write, clocks; 0: CCHIP_MEMORY_LIMIT_DEFAULT
+    input  wire [                   31:0] memory_limit,
+    // ---- rings (cchip_query_ring, cchip_record_ring)
+    input  wire                           enable,              // 0: no further query is read
+    input  wire [                   57:0] query_base,  // address of the ring of queries / 64
+    input  wire [                    3:0] query_size_log2,     // it has 2^n lines
+    input  wire [                   15:0] query_producer,      // queries that the host has written
+    output wire [                   15:0] query_consumer,      // queries that the chip has read
+    // a query could not be read, the ring has stopped
     output wire                           query_failed,
-    input  wire [                   59:0] record_base,       // address / 16
-    input  wire [                    4:0] record_size_log2,
-    input  wire [                   31:0] record_consumer,
-    output wire [                   31:0] record_producer,
+    input  wire [                   59:0] record_base,  // address of the ring of records / 16
+    input  wire [                    4:0] record_size_log2,    // it has 2^n records
+    input  wire [                   31:0] record_consumer,     // records that the host has read
+    output wire [                   31:0] record_producer,     // records that memory holds
+    // a record could not be written, the ring has stopped
     output wire                           record_failed,
-    // cache (cchip_cache)
-    input  wire [           LOCKS*32-1:0] lock_first,
+    // ---- cache (cchip_cache)
+    input  wire [           LOCKS*32-1:0] lock_first,          // first line of each range to lock
+    // last line of each range; empty if first > last
     input  wire [           LOCKS*32-1:0] lock_last,
-    input  wire                           invalidate_valid,
-    output wire                           invalidate_ready,
-    input  wire [                   31:0] invalidate_first,
-    input  wire [                   31:0] invalidate_last,
-    // the response to a read or a write is outstanding
+    input  wire                           invalidate_valid,    // command: invalidate lines
+    output wire                           invalidate_ready,    // no command is at work
+    input  wire [                   31:0] invalidate_first,    // first line
+    input  wire [                   31:0] invalidate_last,     // last line
+    // ---- the response to a read or a write is outstanding
+    // the response to a read is outstanding
     output wire                           read_outstanding,
+    // the response to a write is outstanding
     output wire                           write_outstanding,
+    // no query is between its ring and the records that memory holds
     output wire                           idle,
-    // what happens on this clock, for counters
-    output wire                           count_step,        // a node pair was expanded
-    output wire                           count_leaf_pair,
-    output wire                           count_pair,        // a primitive pair has its result
-    output wire                           count_box_busy,
-    output wire                           count_query,       // its done record leaves for the ring
-    output wire                           count_error,       // with a code other than ok and host
-    output wire                           count_record,      // a record leaves for the ring
-    output wire                           count_record_wait, // a record waits
-    output wire [                    1:0] count_hit,         // of the cache, of each port
-    output wire [                    1:0] count_miss,
-    // slots, as in cchip_slots; their swaps: cchip_swaps
-    output wire                           answered,
-    output wire [      `CCHIP_KIND_W-1:0] answered_module,
-    output wire                           refused_kind,
+    // ---- what happens on this clock, for counters
+    output wire                           count_step,          // a node pair was expanded
+    output wire                           count_leaf_pair,     // a leaf pair was found
+    output wire                           count_pair,          // a primitive pair has its result
+    output wire                           count_box_busy,      // the box test works
+    output wire                           count_query,         // a done record leaves for its ring
+    output wire                           count_error,         // with another code than ok and host
+    output wire                           count_record,        // a record leaves for its ring
+    output wire                           count_record_wait,   // a record waits
+    output wire [                    1:0] count_hit,  // bit p: port p of the cache answered at once
+    output wire [                    1:0] count_miss,          // bit p: port p asks memory
+    // ---- slots, as in cchip_slots; their swaps: cchip_swaps
+    output wire                           answered,            // an answer left, one clock
+    output wire [      `CCHIP_KIND_W-1:0] answered_module,     // module of that answer, 0: none
+    output wire                           refused_kind,  // a pair of kind 0 was taken, one clock
+    // a pair of a kind without a provider was taken, one clock
     output wire                           refused_provider,
+    // of each of four slots: pairs inside
     output wire [4*`CCHIP_PAIR_COUNT_W-1:0] slot_outstanding,
-    output wire [   4*`CCHIP_RM_ID_W-1:0] slot_rm_id,
-    output wire [                    3:0] slot_decoupled,
+    output wire [   4*`CCHIP_RM_ID_W-1:0] slot_rm_id,  // of each of four slots: module that works
+    output wire [                    3:0] slot_decoupled,      // of each of four slots
+    // pairs in the queues of kinds 1, 2, 3, see cchip_swaps
     output wire [3*$clog2(QUEUE_DEPTH+1)-1:0] swap_waiting,
+    // a queue that is full, or holds pairs while the transform's credit is used up
     output wire [                    2:0] swap_full,
+    // of kinds 1, 2, 3, see cchip_swaps; the following, too
     input  wire [                    2:0] no_provider,
-    output wire [`CCHIP_KIND_W*SLOTS-1:0] slot_module,
-    input  wire [              SLOTS-1:0] slot_stop,
-    input  wire [              SLOTS-1:0] slot_decouple,
-    input  wire [              SLOTS-1:0] slot_hold_reset,
-    input  wire [              SLOTS-1:0] slot_roc_start,
-    output wire [              SLOTS-1:0] slot_quiet,
-    output wire [              SLOTS-1:0] slot_roc_busy,
-    output wire [`CCHIP_RM_ID_W*SLOTS-1:0] slot_region_rm_id,
-    output wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] slot_lost,
-    input  wire                           cfg_valid,
-    input  wire [              CFG_W-1:0] cfg_data,
-    // memory
-    output wire                           m_axi_arvalid,
-    input  wire                           m_axi_arready,
-    output wire [       $clog2(MISSES):0] m_axi_arid,
-    output wire [                   63:0] m_axi_araddr,
-    output wire [                    7:0] m_axi_arlen,
-    output wire [                    2:0] m_axi_arsize,
-    output wire [                    1:0] m_axi_arburst,
-    output wire [                    3:0] m_axi_arcache,
-    output wire [                    2:0] m_axi_arprot,
-    input  wire                           m_axi_rvalid,
-    output wire                           m_axi_rready,
-    input  wire [       $clog2(MISSES):0] m_axi_rid,
-    input  wire [             DATA_W-1:0] m_axi_rdata,
-    input  wire [                    1:0] m_axi_rresp,
-    input  wire                           m_axi_rlast,
-    output wire                           m_axi_awvalid,
-    input  wire                           m_axi_awready,
-    output wire                           m_axi_awid,
-    output wire [                   63:0] m_axi_awaddr,
-    output wire [                    7:0] m_axi_awlen,
-    output wire [                    2:0] m_axi_awsize,
-    output wire [                    1:0] m_axi_awburst,
-    output wire [                    3:0] m_axi_awcache,
-    output wire [                    2:0] m_axi_awprot,
-    output wire                           m_axi_wvalid,
-    input  wire                           m_axi_wready,
-    output wire [             DATA_W-1:0] m_axi_wdata,
-    output wire [           DATA_W/8-1:0] m_axi_wstrb,
-    output wire                           m_axi_wlast,
-    input  wire                           m_axi_bvalid,
-    output wire                           m_axi_bready,
-    input  wire                           m_axi_bid,
-    input  wire [                    1:0] m_axi_bresp
+    output wire [`CCHIP_KIND_W*SLOTS-1:0] slot_module,         // module that a slot shows
+    input  wire [              SLOTS-1:0] slot_stop,           // the slot gets no further pairs
+    input  wire [              SLOTS-1:0] slot_decouple,       // the slot is cut off
+    input  wire [              SLOTS-1:0] slot_hold_reset,     // the slot is held in reset
+    input  wire [              SLOTS-1:0] slot_roc_start,      // its reset on configuration begins
+    output wire [              SLOTS-1:0] slot_quiet,          // it has no pairs
+    output wire [              SLOTS-1:0] slot_roc_busy,       // its reset on configuration lasts
+    output wire [`CCHIP_RM_ID_W*SLOTS-1:0] slot_region_rm_id,  // module in the partition
+    output wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] slot_lost,     // pairs that it gave up
+    input  wire                           cfg_valid,  // a word is written to the configuration port
+    input  wire [              CFG_W-1:0] cfg_data,            // the word
+    // ---- memory
+    output wire                           m_axi_arvalid,       // read address: valid
+    input  wire                           m_axi_arready,       // taken
+    output wire [       $clog2(MISSES):0] m_axi_arid,          // ID: {client, slot}
+    output wire [                   63:0] m_axi_araddr,        // address, a multiple of 64
+    output wire [                    7:0] m_axi_arlen,         // beats of a line - 1
+    output wire [                    2:0] m_axi_arsize,        // whole beats
+    output wire [                    1:0] m_axi_arburst,       // INCR
+    output wire [                    3:0] m_axi_arcache,       // normal, not cacheable, bufferable
+    output wire [                    2:0] m_axi_arprot,        // unprivileged, secure, data
+    input  wire                           m_axi_rvalid,        // read data: valid
+    output wire                           m_axi_rready,        // taken
+    input  wire [       $clog2(MISSES):0] m_axi_rid,           // ID
+    input  wire [             DATA_W-1:0] m_axi_rdata,         // data
+    input  wire [                    1:0] m_axi_rresp,         // response
+    input  wire                           m_axi_rlast,         // last beat
+    output wire                           m_axi_awvalid,       // write address: valid
+    input  wire                           m_axi_awready,       // taken
+    output wire                           m_axi_awid,          // 0
+    output wire [                   63:0] m_axi_awaddr,        // address, a multiple of the beat
+    output wire [                    7:0] m_axi_awlen,         // 0: one beat
+    output wire [                    2:0] m_axi_awsize,        // whole beats
+    output wire [                    1:0] m_axi_awburst,       // INCR
+    output wire [                    3:0] m_axi_awcache,       // normal, not cacheable, bufferable
+    output wire [                    2:0] m_axi_awprot,        // unprivileged, secure, data
+    output wire                           m_axi_wvalid,        // write data: valid
+    input  wire                           m_axi_wready,        // taken
+    output wire [             DATA_W-1:0] m_axi_wdata,         // data
+    output wire [           DATA_W/8-1:0] m_axi_wstrb,         // the 16 bytes of a record
+    output wire                           m_axi_wlast,         // 1
+    input  wire                           m_axi_bvalid,        // response of a write: valid
+    output wire                           m_axi_bready,        // taken
+    input  wire                           m_axi_bid,           // 0
+    input  wire [                    1:0] m_axi_bresp          // response
 );
 
   localparam integer CONTEXT_W = $clog2(QUERIES);

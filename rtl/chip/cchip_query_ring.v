@@ -17,36 +17,37 @@
 //   cuts         every path
 //   reset        nothing is in flight: reads from before must not be answered
 module cchip_query_ring #(
-    // slots of cchip_axi_read: 2, 4, 8, 16 or 32, at least AHEAD
+    // slots of its client of cchip_axi_read; legal: 2, 4, 8, 16, 32, at least AHEAD
     parameter integer SLOTS = 32,
-    // queries in flight or waiting to leave: 2, 4 or 8
-    parameter integer AHEAD = 4,
-    // width of the data bus, bit: 64, 128, 256 or 512
+    parameter integer AHEAD = 4,    // queries in flight or waiting to leave (query); legal: 2, 4, 8
+    // width of the data bus of memory (bit); legal: 64, 128, 256, 512
     parameter integer DATA_W = 128
 ) (
-    input  wire                          clk,
-    input  wire                          rst,
-    input  wire                          enable,        // 0: no further line is read
-    input  wire [                  57:0] base,          // address / 64
-    input  wire [                   3:0] size_log2,     // of the ring, lines
+    input  wire                          clk,            // clock, rising edge
+    input  wire                          rst,            // synchronous reset, active high
+    input  wire                          enable,         // 0: no further line is read
+    input  wire [                  57:0] base,           // address of the ring / 64
+    input  wire [                   3:0] size_log2,      // the ring has 2^size_log2 lines
+    // queries that the host has written, free running
     input  wire [                  15:0] producer,
-    output wire [                  15:0] consumer,
-    output wire                          failed,
-    output wire                          idle,          // no line is in flight or waits to leave
-    // client of cchip_axi_read
-    output wire                          m_read_valid,
-    output wire [     $clog2(SLOTS)-1:0] m_read_slot,
-    output wire [                  57:0] m_read_line,
-    input  wire                          s_read_valid,
-    input  wire [     $clog2(SLOTS)-1:0] s_read_slot,
-    input  wire [                   2:0] s_read_beat,
-    input  wire                          s_read_last,
+    output wire [                  15:0] consumer,       // queries that have left, free running
+    output wire                          failed,         // a line could not be read; until reset
+    output wire                          idle,           // no line is in flight or waits to leave
+    // ---- client of cchip_axi_read
+    output wire                          m_read_valid,   // request to cchip_axi_read
+    output wire [     $clog2(SLOTS)-1:0] m_read_slot,    // its slot
+    output wire [                  57:0] m_read_line,    // number of the line, address / 64
+    input  wire                          s_read_valid,   // beat of an answer of cchip_axi_read
+    input  wire [     $clog2(SLOTS)-1:0] s_read_slot,    // its slot
+    input  wire [                   2:0] s_read_beat,    // number of the beat in its line
+    input  wire                          s_read_last,    // last beat
+    // ReadCode, docs/hardware/definitions.md, while s_read_last = 1
     input  wire [`CCHIP_READ_CODE_W-1:0] s_read_code,
-    input  wire [            DATA_W-1:0] s_read_data,
-    // queries
-    output wire                          m_query_valid,
-    input  wire                          m_query_ready,
-    output wire [    `CCHIP_QUERY_W-1:0] m_query_data
+    input  wire [            DATA_W-1:0] s_read_data,    // data
+    // ---- queries
+    output wire                          m_query_valid,  // a query
+    input  wire                          m_query_ready,  // it is taken
+    output wire [    `CCHIP_QUERY_W-1:0] m_query_data  // record QUERY, docs/hardware/definitions.md
 );
 
   localparam integer AHEAD_W = $clog2(AHEAD);

@@ -17,28 +17,29 @@
 //   cuts         every path
 //   reset        the ring is empty, at its beginning; writes from before must not be answered
 module cchip_record_ring #(
-    // width of the data bus, bit: 128, 256 or 512
-    parameter integer DATA_W = 128
+    parameter integer DATA_W = 128  // width of the data bus of memory (bit); legal: 128, 256, 512
 ) (
-    input  wire                           clk,
-    input  wire                           rst,
-    input  wire [                   59:0] base,          // address / 16
-    input  wire [                    4:0] size_log2,     // of the ring, records
-    input  wire [                   31:0] consumer,
+    input  wire                           clk,            // clock, rising edge
+    input  wire                           rst,            // synchronous reset, active high
+    input  wire [                   59:0] base,           // address of the ring / 16
+    input  wire [                    4:0] size_log2,      // the ring has 2^size_log2 records
+    input  wire [                   31:0] consumer,  // records that the host has read, free running
+    // records that memory has confirmed, free running
     output wire [                   31:0] producer,
-    output wire                           failed,
-    output wire                           idle,          // memory holds every record
-    input  wire                           s_valid,
-    output wire                           s_ready,
-    input  wire [                  127:0] s_data,        // PAIR_RECORD or DONE_RECORD
-    // client of cchip_axi_write: one beat each
-    output wire                           m_valid,
-    input  wire                           m_ready,
-    output wire [64-$clog2(DATA_W/8)-1:0] m_address,     // of the beat
-    output wire [             DATA_W-1:0] m_data,
-    output wire [           DATA_W/8-1:0] m_strb,
-    input  wire                           s_answer,
-    input  wire [ `CCHIP_WRITE_CODE_W-1:0] s_answer_code
+    output wire                           failed,         // a write failed; until reset
+    output wire                           idle,           // memory holds every record
+    input  wire                           s_valid,        // a record
+    output wire                           s_ready,        // it is taken
+    // record PAIR_RECORD or DONE_RECORD, docs/hardware/definitions.md
+    input  wire [                  127:0] s_data,
+    // ---- client of cchip_axi_write: one beat each
+    output wire                           m_valid,        // a write of one beat, to cchip_axi_write
+    input  wire                           m_ready,        // it is taken
+    output wire [64-$clog2(DATA_W/8)-1:0] m_address,      // address of the beat
+    output wire [             DATA_W-1:0] m_data,         // the record, in every part of the beat
+    output wire [           DATA_W/8-1:0] m_strb,         // the part that is the record
+    input  wire                           s_answer,       // answer to a write, in their order
+    input  wire [ `CCHIP_WRITE_CODE_W-1:0] s_answer_code  // WriteCode, docs/hardware/definitions.md
 );
 
   localparam integer RECORDS = DATA_W / 128;  // of a beat

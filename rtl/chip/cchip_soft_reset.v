@@ -9,16 +9,24 @@
 //   latency      1 clock from request to resetting; done is 1 on the first clock after it
 //   cuts         every path: each output is a flip-flop
 //   reset        ends a soft reset, without done
+//   rules        The bus masters must not be reset: reads that they hold in their queues go to
+//                memory, and their answers reach clients that are in reset and drop them. If memory
+//                never answers, resetting stays 1: the module has no time-out, since a core that is
+//                let go could take a late answer for its own.
+//   inside       One flip-flop and a counter of quiet clocks.
+//   test         tests/unit/test_cchip_soft_reset.cpp: a model on every clock, for several CLOCKS.
+//                Assertion in the RTL: a_done.
 module cchip_soft_reset #(
-    // clocks, more than a request needs from its queue to the bus: 2..256
+    // quiet clocks before the reset ends; more than a request needs from its queue to the bus;
+    // legal: 2..256
     parameter integer CLOCKS = 16
 ) (
-    input  wire clk,
-    input  wire rst,
-    input  wire request,
+    input  wire clk,          // clock, rising edge
+    input  wire rst,          // synchronous reset, active high
+    input  wire request,      // 1 for a clock: reset the core
     input  wire outstanding,  // a response is outstanding
-    output wire resetting,
-    output wire done
+    output wire resetting,    // reset of the core
+    output wire done          // the reset has ended; 1 for a clock
 );
 
   localparam integer COUNT_W = $clog2(CLOCKS);

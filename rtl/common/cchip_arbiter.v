@@ -8,14 +8,18 @@
 //   latency      0 clocks: grant follows request
 //   cuts         nothing
 //   reset        the search begins at source 0
+//   about        Every choice between equals in this project is one of these.
+//   timing       A request may be taken back.
+//   why          A mask of the sources behind the last one, a search below the mask and one without
+//                it, side by side. The depth grows with the logarithm of N; that of a token that
+//                runs from source to source grows with N.
 module cchip_arbiter #(
-    // sources, 1..32
-    parameter integer N = 4
+    parameter integer N = 4  // sources; legal: 1..32
 ) (
-    input  wire         clk,
-    input  wire         rst,
-    input  wire [N-1:0] request,
-    output wire [N-1:0] grant,
+    input  wire         clk,      // clock, rising edge
+    input  wire         rst,      // synchronous reset, active high
+    input  wire [N-1:0] request,  // bit i: source i asks
+    output wire [N-1:0] grant,    // one-hot: the source whose turn it is; 0 without a request
     input  wire         take      // the source of grant, if any, is served on this clock
 );
 

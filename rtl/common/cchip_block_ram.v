@@ -21,20 +21,21 @@
 //   cuts         every path
 //   reset        none; words never written hold any value
 module cchip_block_ram #(
-    // width of a word, bit, >= 1
-    parameter integer WIDTH = 8,
-    // words that are written at once, 1 or 4
-    parameter integer WORDS = 1,
-    // width of the address of a word, bit, 3..16
+    parameter integer WIDTH = 8,                        // width of a word (bit); legal: >= 1
+    parameter integer WORDS = 1,  // words that are written at once; legal: 1, 4
+    // width of the address of a word: 1 << ADDR_W words (bit); legal: 3..16
     parameter integer ADDR_W = 9,
-    // with four words, 1: one memory with a wider port for writing; 0: four and a multiplexer
+    // with four words, 1: one memory with a wider port for writing; 0: four and a multiplexer; the
+    // macro CCHIP_MIXED_WIDTH is 0 in Quartus, else 1, unless the project defines it; legal: 0, 1
     parameter integer MIXED_WIDTH = `CCHIP_MIXED_WIDTH
 ) (
-    input  wire                                   clk,
-    input  wire                                   write,
+    input  wire                                   clk,         // clock, rising edge
+    input  wire                                   write,       // 1: write_data is stored
+    // where: word i of the data goes to address WORDS * write_addr + i
     input  wire [ADDR_W-(WORDS==4 ? 2 : 0)-1:0] write_addr,
-    input  wire [                WORDS*WIDTH-1:0] write_data,
-    input  wire [                     ADDR_W-1:0] read_addr,
+    input  wire [                WORDS*WIDTH-1:0] write_data,  // what, word 0 in the lowest bits
+    input  wire [                     ADDR_W-1:0] read_addr,   // which word to read
+    // the word at the address of 2 clocks before
     output wire [                      WIDTH-1:0] read_data
 );
 

@@ -8,15 +8,19 @@
 //   reset        count 0, some 0, room 1
 //   rules        up only while room = 1, down only while some = 1; both on one clock leave the
 //                count as it is
+//   timing       All outputs are flip-flops and change one clock after up or down; both on one
+//                clock change nothing.
+//   why          Who gives out credit needs "is there room?" on the next clock, not a comparison
+//                behind a sum. The comparisons use registers only; up and down, which come late,
+//                select among their results.
 module cchip_count #(
-    // most things inside, 1..65535
-    parameter integer LIMIT = 16
+    parameter integer LIMIT = 16  // most things inside; legal: 1..65535
 ) (
-    input  wire                       clk,
-    input  wire                       rst,
-    input  wire                       up,
-    input  wire                       down,
-    output wire [$clog2(LIMIT+1)-1:0] count,
+    input  wire                       clk,    // clock, rising edge
+    input  wire                       rst,    // synchronous reset, active high
+    input  wire                       up,     // one more; only while room = 1
+    input  wire                       down,   // one less; only while some = 1
+    output wire [$clog2(LIMIT+1)-1:0] count,  // things inside
     output wire                       some,   // count > 0
     output wire                       room    // count < LIMIT
 );

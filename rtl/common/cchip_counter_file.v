@@ -15,18 +15,18 @@
 //   reset        rst or clear: all counters 0. The RAM is not reset: in the first 16 clocks after
 //                it the walk writes each word without adding what it held.
 module cchip_counter_file #(
-    // counters of 64 bits, 0..8
-    parameter integer WIDE = 4
+    parameter integer WIDE = 4  // counters of 64 bits, those from 0 on; legal: 0..8
 ) (
-    input  wire        clk,
-    input  wire        rst,
-    input  wire        clear,
+    input  wire        clk,           // clock, rising edge
+    input  wire        rst,           // synchronous reset, active high
+    input  wire        clear,  // 1: every counter becomes 0; an event on this clock is not counted
     input  wire [ 7:0] count,         // counter i counts 1
+    // a word is asked for, one clock; the next one on the clock of ack or later
     input  wire        read,
-    input  wire        read_high,     // with read: the high word
-    input  wire [ 2:0] read_counter,
-    output wire        ack,
-    output wire [31:0] read_data      // 0 unless ack
+    input  wire        read_high,     // with read: the high word that was kept
+    input  wire [ 2:0] read_counter,  // the counter; stays until ack
+    output wire        ack,           // the answer, one clock
+    output wire [31:0] read_data      // the word; 0 on other clocks
 );
 
   localparam [31:0] WIDE_COUNT = WIDE;

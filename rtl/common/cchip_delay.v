@@ -8,20 +8,33 @@
 //   reset        RESET = 1 clears every stage (valid bits); RESET = 0 leaves data alone
 //   MEMORY = 1   (DEPTH >= 3, RESET = 0) keeps the values in a small memory with a circulating
 //                pointer instead of flip-flops
+//   about        A delay line: q is what d was DEPTH clocks ago. The pipeline uses it for
+//                everything that travels beside the arithmetic (valid bits, points, axis codes),
+//                and the arithmetic blocks use it for their optional registers.
+//   timing       With DEPTH > 0 the path d -> q is cut; with DEPTH = 0 it is combinational. With
+//                RESET = 1 the first rising edge with rst = 1 clears all stages. With RESET = 0 the
+//                first DEPTH values after power-up are undefined. MEMORY = 1 is the same: the
+//                pointer finds into its circle, over 0, from any value of pointer_q and last_q, so
+//                it needs no reset either.
+//   why          Data registers have no reset: the valid bit beside them says whether they count.
+//                That leaves synthesis free to turn a long delay into shift-register cells, which
+//                have no reset input. An FPGA without such cells (ECP5) would spend a flip-flop per
+//                bit and clock. The wide delays of cchip_sat_pipeline (points, programme state) are
+//                therefore memories: DEPTH - 1 words of distributed memory, a circulating pointer
+//                that reads a word just before it overwrites it, and the memory's output register.
+//                That the pointer ends its circle is known a clock ahead (last_q).
 module cchip_delay #(
-    // width of the value, bit
-    parameter integer WIDTH = 1,
-    // delay, clocks, >= 0
-    parameter integer DEPTH = 1,
-    // 1: rst clears all stages; 0: it does not
-    parameter integer RESET = 0,
-    // 1: distributed memory instead of a chain of registers
+    parameter integer WIDTH = 1,  // width of the value (bit); legal: >= 1
+    parameter integer DEPTH = 1,  // delay; 0 is a wire (clock); legal: >= 0
+    parameter integer RESET = 0,  // 1: rst clears every stage; 0: it does not; legal: 0, 1
+    // 1: a small memory instead of a chain of registers; needs DEPTH >= 3 and RESET = 0; legal: 0,
+    // 1
     parameter integer MEMORY = 0
 ) (
-    input  wire             clk,
-    input  wire             rst,
-    input  wire [WIDTH-1:0] d,
-    output wire [WIDTH-1:0] q
+    input  wire             clk,  // clock, rising edge
+    input  wire             rst,  // synchronous reset, active high; used only with RESET = 1
+    input  wire [WIDTH-1:0] d,    // value in
+    output wire [WIDTH-1:0] q     // value DEPTH clocks later
 );
 
   `CCHIP_REFUSE(WIDTH < 1 || DEPTH < 0 || RESET < 0 || RESET > 1,

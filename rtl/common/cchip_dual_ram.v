@@ -10,18 +10,24 @@
 //   device       rtl/cchip_ecp5.f takes the block itself, vendor/ecp5/cchip_dual_ram.v
 //   cuts         every path
 //   reset        none; words never written hold any value
+//   timing       The outputs are flip-flops. No reset: words are undefined until written.
+//   why          A block of any FPGA has two ports, each with its own address; a memory with two
+//                readers beside a writer, cchip_block_ram twice, takes two blocks for each bit.
+//                Where a write may cost a read, as a line that arrives in cchip_cache, one block is
+//                enough. On ECP5 a leaf takes the blocks themselves, for the reason given at
+//                cchip_block_ram: 18 bits a block up to 1,024 words, 9 bits with 2,048.
 module cchip_dual_ram #(
-    // width of a word, bit, >= 1
-    parameter integer WIDTH = 8,
-    // width of an address, bit, 3..16
-    parameter integer ADDR_W = 11
+    parameter integer WIDTH = 8,   // width of a word (bit); legal: >= 1
+    parameter integer ADDR_W = 11  // width of an address: 1 << ADDR_W words (bit); legal: 3..16
 ) (
-    input  wire              clk,
-    input  wire              write,
-    input  wire [ADDR_W-1:0] addr_a,
-    input  wire [ WIDTH-1:0] write_data,
+    input  wire              clk,          // clock, rising edge
+    input  wire              write,        // 1: write_data is stored at addr_a
+    input  wire [ADDR_W-1:0] addr_a,       // which word to write or to read
+    input  wire [ WIDTH-1:0] write_data,   // what to write
+    // the word at addr_a of 2 clocks before; any value if it was written on that clock
     output wire [ WIDTH-1:0] read_data_a,
-    input  wire [ADDR_W-1:0] addr_b,
+    input  wire [ADDR_W-1:0] addr_b,       // which word to read
+    // the word at addr_b of 2 clocks before; any value if it was written on that clock
     output wire [ WIDTH-1:0] read_data_b
 );
 

@@ -8,20 +8,23 @@
 //   cuts         valid, ready and data: every output is a flip-flop
 //   reset        empty; s_ready = 0 while rst is 1
 module cchip_fifo #(
-    // width of the payload, bit
-    parameter integer WIDTH = 8,
-    // capacity, beats
-    parameter integer DEPTH = 16,
-    // 1: the sender raises s_valid only while s_ready is 1; saves the logic that checks it
+    parameter integer WIDTH = 8,      // width of the payload (bit); legal: >= 1
+    parameter integer DEPTH = 16,     // capacity (beat); legal: >= 1, any number
+    // 1: the sender raises s_valid only while s_ready is 1; saves the logic that checks it; legal:
+    // 0, 1
     parameter integer ROOM_KNOWN = 0
 ) (
-    input  wire             clk,
-    input  wire             rst,
-    input  wire             s_valid,
-    output wire             s_ready,
-    input  wire [WIDTH-1:0] s_data,
-    output wire             m_valid,
-    input  wire             m_ready,
+    // ---- clock and reset
+    input  wire             clk,      // clock, rising edge
+    input  wire             rst,      // synchronous reset, active high
+    // ---- input stream
+    input  wire             s_valid,  // the sender offers s_data
+    output wire             s_ready,  // there is room; the beat is taken if s_valid = 1 as well
+    input  wire [WIDTH-1:0] s_data,   // payload in
+    // ---- output stream
+    output wire             m_valid,  // m_data is the oldest beat
+    input  wire             m_ready,  // the receiver takes the beat if m_valid = 1 as well
+    // oldest beat, does not change while m_valid = 1 and m_ready = 0; undefined while m_valid = 0
     output wire [WIDTH-1:0] m_data
 );
 

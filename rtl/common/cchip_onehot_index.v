@@ -6,14 +6,16 @@
 //                1 at once
 //   latency      0 clocks: index follows select
 //   cuts         nothing
+//   timing       Combinational.
+//   numbers      With two bits of select at 1 the output is the OR of both numbers.
+//   why          Each bit of the number is the OR of half of the vector: no priority, so no carry
+//                chain.
 module cchip_onehot_index #(
-    // bits of the vector, 1..64
-    parameter integer N = 4,
-    // width of the number, bit, >= 1 and at least log2(N)
-    parameter integer WIDTH = 2
+    parameter integer N = 4,     // bits of the vector; legal: 1..64
+    parameter integer WIDTH = 2  // width of the number (bit); legal: 1..30, 2^WIDTH >= N
 ) (
-    input  wire [    N-1:0] select,
-    output wire [WIDTH-1:0] index
+    input  wire [    N-1:0] select,  // one-hot, or 0
+    output wire [WIDTH-1:0] index    // number of its bit; 0 if select is 0
 );
 
   `CCHIP_REFUSE(N < 1 || N > 64 || WIDTH < 1 || WIDTH > 30 || (1 << WIDTH) < N,

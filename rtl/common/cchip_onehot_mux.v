@@ -6,15 +6,22 @@
 //                must not be 1 at once
 //   latency      0 clocks: m_data follows select and s_data
 //   cuts         nothing
+//   about        The word of the source that a one-hot vector selects, as an AND-OR tree: behind
+//                every cchip_arbiter whose grant chooses data.
+//   timing       Combinational.
+//   numbers      With two bits of select at 1 the output is the OR of both words: the module does
+//                not check it, because the vectors come from modules that assert it
+//                (cchip_arbiter).
+//   why          A multiplexer with a number as its select input first decodes the number. The
+//                select inputs of this project come from arbiters and registers that are one-hot
+//                already, so two levels of gates per bit are enough.
 module cchip_onehot_mux #(
-    // sources, 1..32
-    parameter integer N = 4,
-    // width of a word, bit, >= 1
-    parameter integer WIDTH = 8
+    parameter integer N = 4,     // sources; legal: 1..32
+    parameter integer WIDTH = 8  // width of a word (bit); legal: >= 1
 ) (
-    input  wire [      N-1:0] select,
+    input  wire [      N-1:0] select,  // one-hot: bit i selects word i; 0 selects none
     input  wire [N*WIDTH-1:0] s_data,  // word i in bits [WIDTH*i +: WIDTH]
-    output wire [  WIDTH-1:0] m_data
+    output wire [  WIDTH-1:0] m_data   // the selected word; 0 if none is
 );
 
   `CCHIP_REFUSE(N < 1 || N > 32 || WIDTH < 1,

@@ -8,21 +8,25 @@
 //   cuts         every path: each output is a flip-flop
 //   reset        all numbers are free; the first is lent from the 3rd clock on, then one per clock
 //   rules        back_valid only with a number that is lent
+//   timing       A number that comes back to an empty pool is offered 2 clocks later. After reset
+//                the numbers are put into the queue, one on each clock on which none comes back;
+//                the first is offered from the third clock on.
+//   why          A queue takes the place of a mask and a search for its lowest bit. So every output
+//                is a flip-flop at any size. A number rests as long as possible, so a response that
+//                is still outstanding for its last user has time to arrive.
 module cchip_pool #(
-    // first number
-    parameter integer FIRST = 0,
-    // numbers, 1..256
-    parameter integer COUNT = 16,
-    // width of a number, bit
+    parameter integer FIRST = 0,   // first number; legal: >= 0
+    parameter integer COUNT = 16,  // how many (number); legal: 1..256
+    // width of a number (bit); legal: 1..30, wide enough for FIRST + COUNT - 1
     parameter integer WIDTH = 4
 ) (
-    input  wire             clk,
-    input  wire             rst,
-    output wire             m_valid,
-    input  wire             m_ready,
-    output wire [WIDTH-1:0] m_number,
-    input  wire             back_valid,
-    input  wire [WIDTH-1:0] back_number
+    input  wire             clk,         // clock, rising edge
+    input  wire             rst,         // synchronous reset, active high
+    output wire             m_valid,     // a number is free
+    input  wire             m_ready,     // it is lent
+    output wire [WIDTH-1:0] m_number,    // which
+    input  wire             back_valid,  // a number comes back
+    input  wire [WIDTH-1:0] back_number  // which; it was lent
 );
 
   localparam [31:0] BEGIN = FIRST;

@@ -10,18 +10,17 @@
 //                earlier one the old word
 //   reset        none; words are undefined until written
 module cchip_ram #(
-    // width of a word, bit
-    parameter integer WIDTH = 8,
-    // words
-    parameter integer DEPTH = 16,
-    // width of an address, bit: $clog2(DEPTH); up to 4 also of a smaller memory
+    parameter integer WIDTH = 8,   // width of a word (bit); legal: >= 1
+    parameter integer DEPTH = 16,  // words; legal: >= 1
+    // width of an address (bit); legal: $clog2(DEPTH); up to 4 also of a smaller memory
     parameter integer ADDR_W = 4
 ) (
-    input  wire              clk,
-    input  wire              write,
-    input  wire [ADDR_W-1:0] write_addr,
-    input  wire [ WIDTH-1:0] write_data,  // one clock after write, write_addr
-    input  wire [ADDR_W-1:0] read_addr,
+    input  wire              clk,         // clock, rising edge
+    input  wire              write,       // 1: write_data of the next clock is stored
+    input  wire [ADDR_W-1:0] write_addr,  // where, 0..DEPTH - 1
+    input  wire [ WIDTH-1:0] write_data,  // what, one clock after write and write_addr
+    input  wire [ADDR_W-1:0] read_addr,   // which word to read, 0..DEPTH - 1
+    // the word at the address of CCHIP_RAM_LATENCY clocks before
     output wire [ WIDTH-1:0] read_data
 );
 

@@ -9,16 +9,19 @@
 //   reset        empties the buffer; s_ready and m_valid are 0 while rst is 1; a beat of the clock
 //                on which rst rises is lost
 module cchip_skid_buffer #(
-    // width of the payload, bit, >= 1
-    parameter integer WIDTH = 8
+    parameter integer WIDTH = 8  // width of the payload (bit); legal: >= 1
 ) (
-    input  wire             clk,
-    input  wire             rst,
-    input  wire             s_valid,
-    output wire             s_ready,
-    input  wire [WIDTH-1:0] s_data,
-    output wire             m_valid,
-    input  wire             m_ready,
+    // ---- clock and reset
+    input  wire             clk,      // clock, rising edge
+    input  wire             rst,      // synchronous reset, active high
+    // ---- input stream
+    input  wire             s_valid,  // the sender offers s_data
+    output wire             s_ready,  // the beat is taken if s_valid = 1 as well
+    input  wire [WIDTH-1:0] s_data,   // payload in
+    // ---- output stream
+    output wire             m_valid,  // m_data is offered; stays until taken
+    input  wire             m_ready,  // the receiver takes the beat if m_valid = 1 as well
+    // payload out, does not change while m_valid = 1 and m_ready = 0
     output wire [WIDTH-1:0] m_data
 );
 

@@ -16,14 +16,14 @@
 //   cuts         every path: each output is a flip-flop
 //   reset        restart = 1 for a clock. elapsed wraps after 2^32 clocks, which no limit reaches
 module cchip_timeout #(
-    // limit that 0 stands for, clocks, >= 1
-    parameter integer DEFAULT = 4096
+    parameter integer DEFAULT = 4096  // the limit that 0 stands for (clock); legal: 1..2^31 - 1
 ) (
-    input  wire        clk,
+    input  wire        clk,      // clock, rising edge
+    // count from the next clock on; for a clock of the user's reset, too
     input  wire        restart,
-    input  wire [31:0] limit,    // clocks; 0: DEFAULT
+    input  wire [31:0] limit,    // 1..2^32 - 1 clocks; 0: DEFAULT
     output wire [31:0] elapsed,  // clocks since restart, this one included: 1 on the first
-    output wire        expired   // elapsed had reached the limit on the last clock
+    output wire        expired   // on the last clock elapsed had reached the limit
 );
 
   localparam [31:0] BOUND = DEFAULT;

@@ -12,29 +12,44 @@
 //   cuts         every path but s_kind to s_ready and s_place
 //   reset        empty
 //   a place is written again one clock after its pop at the earliest
+//   about        What the descriptors mean, the queues do not know.
+//   timing       A push is seen by some one clock later. m_place stays until one clock after the
+//                next look, m_data no longer than until three clocks after the pop: then its place
+//                may be written again. pop comes one clock after its look at the earliest. A place
+//                is written again one clock after its pop at the earliest: a module that reads
+//                something else at that place (the operand memory) begins on the clock of pop.
+//   numbers      A place is {kind, pointer}, CCHIP_KIND_BITS(KINDS) + $clog2(DEPTH) bits: two for
+//                the kind, three with four kinds.
+//   why          Descriptors are narrow, so one block RAM holds the queues of all kinds; a FIFO for
+//                each kind would take a block RAM each. With a queue for kind 0, pairs that no slot
+//                can test need no path of their own.
 module cchip_descriptor_queues #(
-    // width of a descriptor, bit, 1..80
-    parameter integer WIDTH = `CCHIP_DESCRIPTOR_W,
-    // kinds of pairs, 1..4
-    parameter integer KINDS = 3,
-    // descriptors in each queue, a power of two, 16..1024
+    parameter integer WIDTH = `CCHIP_DESCRIPTOR_W,  // width of a descriptor (bit); legal: 1..80
+    parameter integer KINDS = 3,                    // kinds of pairs; legal: 1..3
+    // capacity of each queue (descriptor); legal: a power of two, 16..1024
     parameter integer DEPTH = 128
 ) (
-    input  wire                                  clk,
-    input  wire                                  rst,
-    input  wire                                  s_valid,
-    output wire                                  s_ready,  // the queue of s_kind has room
-    input  wire [              `CCHIP_KIND_W-1:0] s_kind,
-    input  wire [                     WIDTH-1:0] s_data,
-    output wire [`CCHIP_KIND_BITS(KINDS)+$clog2(DEPTH)-1:0] s_place,  // of the next of s_kind
-    // queue k at bit and word k
-    output wire [                       KINDS:0] some,     // it is not empty
-    output wire [(KINDS+1)*$clog2(DEPTH+1)-1:0]  waiting,  // descriptors in it
-    output wire [                       KINDS:0] room,
-    input  wire [                       KINDS:0] kind,     // one-hot: the kind looked at, popped
+    input  wire                                  clk,                 // clock, rising edge
+    input  wire                                  rst,  // synchronous reset, active high
+    input  wire                                  s_valid,             // a descriptor is offered
+    // the queue of s_kind has room; follows s_kind
+    output wire                                  s_ready,
+    input  wire [              `CCHIP_KIND_W-1:0] s_kind,  // kind of the descriptor, at most KINDS
+    input  wire [                     WIDTH-1:0] s_data,              // the descriptor
+    // where the next descriptor of s_kind goes; follows s_kind
+    output wire [`CCHIP_KIND_BITS(KINDS)+$clog2(DEPTH)-1:0] s_place,
+    // ---- queue k at bit and word k
+    output wire [                       KINDS:0] some,                // bit k: queue k is not empty
+    output wire [(KINDS+1)*$clog2(DEPTH+1)-1:0]  waiting,  // per queue: descriptors in it
+    output wire [                       KINDS:0] room,                // bit k: queue k is not full
+    // one-hot: the queue that look and pop are about
+    input  wire [                       KINDS:0] kind,
+    // 1: the place of the head of kind is fetched
     input  wire                                  look,
-    input  wire                                  pop,      // the descriptor at its head leaves
+    input  wire                                  pop,  // the descriptor at the head of kind leaves
+    // 1 clock after look: the place of the head
     output wire [`CCHIP_KIND_BITS(KINDS)+$clog2(DEPTH)-1:0] m_place,
+    // 3 clocks after look: the descriptor there
     output wire [                     WIDTH-1:0] m_data
 );
 

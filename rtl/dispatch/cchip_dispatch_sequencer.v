@@ -16,29 +16,39 @@
 //                m_last; m_kind and m_taker are those of the pair until the next m_first
 //   cuts         every path: each output comes from flip-flops
 //   reset        nothing is dispatched
+//   about        It knows nothing of pairs but their kind, and nothing of slots but that they have
+//                room and serve a kind.
+//   timing       A launch every 3 clocks, after a kind with quads every 4. some and room must show
+//                a launch on the next clock; a change of serves may still be followed by launches
+//                for 5 clocks.
+//   numbers      Kind 0 is the illegal one; kinds 2 and 3 have four vertices.
+//   why          A pair needs three clocks on its way into a slot, so there is time to choose in
+//                steps of two levels of logic. The kind is chosen ahead of time, among those that
+//                were possible a clock or two ago; then its takers, with what is true now. If the
+//                choice turns out to be out of date, the turn goes to the next kind.
 module cchip_dispatch_sequencer #(
-    // takers, 2..5
+    // slots, and the one that answers pairs that no slot can test (taker); legal: 2..5
     parameter integer TAKERS = 2,
-    // kinds of pairs, 1..4
-    parameter integer KINDS = 3
+    parameter integer KINDS = 3    // kinds of pairs; legal: 1..4
 ) (
-    input  wire                        clk,
-    input  wire                        rst,
-    // kind k at bit k; 0 is the illegal kind
-    input  wire [             KINDS:0] some,     // pairs wait
-    // taker t serves kind k: bit (KINDS + 1) * t + k
-    input  wire [TAKERS*(KINDS+1)-1:0] serves,
-    input  wire [          TAKERS-1:0] room,     // the taker has room for a pair
-    output wire [             KINDS:0] kind,     // one-hot
-    output wire                        look,
-    output wire                        launch,   // the pair leaves its queue
-    output wire [          TAKERS-1:0] grant,    // one-hot: its taker; 0 without launch
-    output wire [                 1:0] m_vertex,
+    input  wire                        clk,       // clock, rising edge
+    input  wire                        rst,       // synchronous reset, active high
+    // ---- kind k at bit k; 0 is the illegal kind
+    input  wire [             KINDS:0] some,      // bit k: pairs of kind k wait
+    input  wire [TAKERS*(KINDS+1)-1:0] serves,    // bit (KINDS + 1) t + k: taker t serves kind k
+    input  wire [          TAKERS-1:0] room,      // bit t: taker t has room for a pair
+    output wire [             KINDS:0] kind,      // one-hot: the kind of this turn
+    output wire                        look,      // the place of its head is to be fetched
+    // the pair leaves its queue, its first vertex is read
+    output wire                        launch,
+    output wire [          TAKERS-1:0] grant,     // one-hot with launch: its taker; else 0
+    output wire [                 1:0] m_vertex,  // vertex that is read on this clock
+    // what was read two clocks ago is a vertex of a pair
     output wire                        m_valid,
-    output wire                        m_first,
-    output wire                        m_last,
-    output wire [   `CCHIP_KIND_W-1:0] m_kind,
-    output wire [          TAKERS-1:0] m_taker   // one-hot
+    output wire                        m_first,   // it is the first one
+    output wire                        m_last,    // it is the last one
+    output wire [   `CCHIP_KIND_W-1:0] m_kind,    // kind of that pair, until the next m_first
+    output wire [          TAKERS-1:0] m_taker    // its taker, one-hot, until the next m_first
 );
 
   localparam integer QUEUES = KINDS + 1;

@@ -16,50 +16,65 @@
 //   fair         kinds are served in turn, and so are slots and answers
 //   cuts         every path: each output comes from flip-flops
 //   reset        no pair inside any slot, no answer
+//   timing       A lone pair: 6 clocks from some to its first vertex, 6 from a result to its
+//                answer.
+//   numbers      Module m serves the kinds 1..m, the test of points (4) kind 4 alone
+//                (CCHIP_RM_SERVES). Pairs of kind 0 and of kinds without a provider go to a taker
+//                of their own that answers at once, as open.
+//   why          A pair leaves its queue only when a slot with credit takes it, and its operands
+//                are at hand by then. So the way to a slot has a fixed length, valid is never
+//                formed from ready, and a swap cannot strand a pair in between.
 module cchip_dispatcher #(
-    // slots, 1..4
-    parameter integer SLOTS = 2,
-    // kinds of pairs, 1..4
-    parameter integer KINDS = 3,
-    // most pairs between dispatch and answer for each slot, 1..256, at most CONTEXTS of each module
+    parameter integer SLOTS = 2,   // slots; legal: 1..4
+    parameter integer KINDS = 3,   // kinds of pairs; legal: 1..3
+    // most pairs between dispatch and answer for each slot; legal: 1..256, at most CONTEXTS of each
+    // module
     parameter integer CREDIT = 42
 ) (
-    input  wire                                  clk,
-    input  wire                                  rst,
-    // queues: kind k at bit k; see cchip_dispatch_sequencer
-    input  wire [                       KINDS:0] some,
-    output wire [                       KINDS:0] kind,
-    output wire                                  look,
-    output wire                                  pop,
-    output wire [                           1:0] vertex,
-    input  wire [       `CCHIP_DESCRIPTOR_W-1:0] descriptor,   // 2 clocks after pop, for 2 clocks
-    input  wire [                       KINDS:1] no_provider,  // no slot can serve the kind
-    // to the slots: record VERTEX but for its vertices, which go with it
-    output wire [                     SLOTS-1:0] m_vertex_valid,
-    output wire                                  m_vertex_first,
-    output wire                                  m_vertex_last,
+    input  wire                                  clk,              // clock, rising edge
+    input  wire                                  rst,              // synchronous reset, active high
+    // ---- queues: kind k at bit k; see cchip_dispatch_sequencer
+    input  wire [                       KINDS:0] some,             // bit k: pairs of kind k wait
+    output wire [                       KINDS:0] kind,             // one-hot: the kind of this turn
+    output wire                                  look,             // see cchip_descriptor_queues
+    output wire                                  pop,              // the pair leaves its queue
+    output wire [                           1:0] vertex,  // vertex of it that is read on this clock
+    // its descriptor, 2 and 3 clocks after pop
+    input  wire [       `CCHIP_DESCRIPTOR_W-1:0] descriptor,
+    input  wire [                       KINDS:1] no_provider,      // no slot can serve the kind
+    // ---- to the slots: record VERTEX but for its vertices, which go with it
+    output wire [                     SLOTS-1:0] m_vertex_valid,   // per slot: a vertex goes to it
+    output wire                                  m_vertex_first,   // the first of its pair
+    output wire                                  m_vertex_last,    // the last of its pair
+    // per slot: number of the pair, with the first vertex
     output wire [  SLOTS*`CCHIP_PAIR_ID_W-1:0]   m_vertex_id,
-    // from the slots: records SLOT_RESULT, the module in each slot, 0: none
-    input  wire [                     SLOTS-1:0] s_result_valid,
-    input  wire [SLOTS*`CCHIP_SLOT_RESULT_W-1:0] s_result_data,
+    // ---- from the slots: records SLOT_RESULT, the module in each slot, 0: none
+    input  wire [                     SLOTS-1:0] s_result_valid,   // per slot: a result
+    input  wire [SLOTS*`CCHIP_SLOT_RESULT_W-1:0] s_result_data,    // per slot: record SLOT_RESULT
+    // per slot: module that is coupled, 0: none
     input  wire [       SLOTS*`CCHIP_KIND_W-1:0] slot_module,
-    // answers
-    output wire                                  m_result_valid,
+    // ---- answers
+    output wire                                  m_result_valid,   // an answer is offered
+    // it is taken if m_result_valid = 1 as well
     input  wire                                  m_result_ready,
-    output wire [             `CCHIP_KIND_W-1:0] m_result_kind,
-    output wire [           `CCHIP_RESULT_W-1:0] m_result_data,
-    // swaps
-    input  wire [                     SLOTS-1:0] stop,
-    output wire [                     SLOTS-1:0] quiet,
-    input  wire [                     SLOTS-1:0] decouple,
-    output wire [                     SLOTS-1:0] decoupled,
-    output wire [ SLOTS*`CCHIP_PAIR_COUNT_W-1:0] outstanding,
+    output wire [             `CCHIP_KIND_W-1:0] m_result_kind,    // kind of the pair
+    output wire [           `CCHIP_RESULT_W-1:0] m_result_data,    // record RESULT
+    // ---- swaps
+    input  wire [                     SLOTS-1:0] stop,  // per slot: see cchip_slot_ledger
+    output wire [                     SLOTS-1:0] quiet,            // per slot
+    input  wire [                     SLOTS-1:0] decouple,         // per slot
+    output wire [                     SLOTS-1:0] decoupled,        // per slot
+    output wire [ SLOTS*`CCHIP_PAIR_COUNT_W-1:0] outstanding,      // per slot: pairs inside
+    // per slot: pairs given up by the last decoupling
     output wire [ SLOTS*`CCHIP_PAIR_COUNT_W-1:0] lost,
-    // events, one clock: an answer of this module left, 0: of none; a pair of kind 0, or one that
-    // no slot provides, was taken
-    output wire                                  answered,
+    // ---- events, one clock: an answer of this module left, 0: of none; a pair of kind 0, or one
+    //      that no slot provides, was taken
+    output wire                                  answered,         // an answer left, one clock
+    // module that gave it; 0: left open
     output wire [             `CCHIP_KIND_W-1:0] answered_module,
+    // a pair of kind 0 was taken, one clock
     output wire                                  refused_kind,
+    // a pair of a kind without a provider was taken, one clock
     output wire                                  refused_provider
 );
 

@@ -18,25 +18,28 @@
 //   cuts         every path: outputs are flip-flops
 //   reset        no pair is accepted; what was written stays
 module cchip_operand_memory #(
-    // width of a coordinate, bit, 4..20
-    parameter integer COORD_W = 16,
-    // width of a place, bit, 3..12: 1 << PLACE_W pairs
-    parameter integer PLACE_W = 9
+    parameter integer COORD_W = 16,  // width of a signed coordinate (bit); legal: 4..20
+    parameter integer PLACE_W = 9    // width of a place: 1 << PLACE_W pairs (bit); legal: 3..12
 ) (
-    input  wire                                   clk,
-    input  wire                                   rst,
-    input  wire                                   s_pair_valid,
+    input  wire                                   clk,           // clock, rising edge
+    input  wire                                   rst,           // synchronous reset, active high
+    input  wire                                   s_pair_valid,  // a pair is offered
+    // 1 on the clock on which it is accepted and written
     output wire                                   s_pair_ready,
+    // ModuleId of its test; 2: A is a triangle that a test of quads takes
     input  wire [              `CCHIP_KIND_W-1:0] s_pair_kind,
-    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,
-    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,
-    // of the kind of the pair: its queue has room, and where
+    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,      // primitive A
+    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,      // primitive B
+    // there is room for the kind of the pair; stays 1 until the pair is accepted; of the kind of
+    // the pair: its queue has room, and where
     input  wire                                   room,
+    // where it goes; used on the clock on which it is accepted
     input  wire [                    PLACE_W-1:0] place,
-    input  wire [                    PLACE_W-1:0] m_place,
+    input  wire [                    PLACE_W-1:0] m_place,       // the pair that is read
+    // the vertex that is read; 0 while none is
     input  wire [                            1:0] m_vertex,
-    output wire [    `CCHIP_POINT_W(COORD_W)-1:0] m_a,
-    output wire [    `CCHIP_POINT_W(COORD_W)-1:0] m_b
+    output wire [    `CCHIP_POINT_W(COORD_W)-1:0] m_a,           // that vertex of A, 2 clocks later
+    output wire [    `CCHIP_POINT_W(COORD_W)-1:0] m_b            // that vertex of B, 2 clocks later
 );
 
   localparam integer POINT_W = `CCHIP_POINT_W(COORD_W);

@@ -17,32 +17,49 @@
 //                one per clock; then decoupled rises. It falls one clock after decouple
 //   cuts         every path: each output is a flip-flop
 //   reset        no pair inside, no answer; open for pairs after CREDIT + 2 clocks
+//   about        The pairs inside one slot: how many there may be, what their numbers mean, and
+//                what becomes of them.
+//   timing       After rst every number is made free: open for pairs after CREDIT + 2 clocks. After
+//                decouple 16 clocks pass, then the numbers are walked through, one per clock, and
+//                16 clocks later decoupled rises; without pairs inside it rises after the first 16.
+//   numbers      A number is free, inside, or neither: its pair is answered, and the answer has not
+//                left. outstanding counts the second, credit the second and third.
+//   why          No ready runs to a slot or back: what was granted has room at every station, here
+//                too, so a slot drains regardless of the receiver. Whether a number is inside is
+//                told by two bits that differ, one written with the grant, one with the answer: two
+//                memories with one writer each. Giving up is the arrival of an open result for
+//                every number; those that are not inside are dropped like any garbage.
 module cchip_slot_ledger #(
-    // most pairs between grant and answer, 1..256
+    // most pairs between grant and answer; at most CONTEXTS of every module of the slot; legal:
+    // 1..256
     parameter integer CREDIT = 42
 ) (
-    input  wire                            clk,
-    input  wire                            rst,
-    output wire                            open,         // the slot may be given pairs
-    output wire                            room,
-    input  wire                            grant,        // a pair is given to the slot
-    output wire [    `CCHIP_PAIR_ID_W-1:0] id,           // its number, 2 clocks after grant
-    input  wire [        `CCHIP_TAG_W-1:0] s_tag,        // 3 clocks after grant
-    input  wire [       `CCHIP_KIND_W-1:0] s_kind,       // 3 clocks after grant
-    // from the slot: record SLOT_RESULT, and the module in it
-    input  wire                            s_result_valid,
-    input  wire [`CCHIP_SLOT_RESULT_W-1:0] s_result_data,
-    input  wire [       `CCHIP_KIND_W-1:0] module_id,
-    // answers: record ANSWER
-    output wire                            m_valid,
-    input  wire                            m_ready,
-    output wire [     `CCHIP_ANSWER_W-1:0] m_data,
-    input  wire                            stop,
+    input  wire                            clk,             // clock, rising edge
+    input  wire                            rst,             // synchronous reset, active high
+    output wire                            open,            // the slot may be given pairs
+    output wire                            room,            // there is a credit
+    // a pair is given to the slot; only while open was 1 at most 6 clocks ago and room is 1
+    input  wire                            grant,
+    output wire [    `CCHIP_PAIR_ID_W-1:0] id,  // number of the pair, 2 clocks after grant
+    input  wire [        `CCHIP_TAG_W-1:0] s_tag,           // its tag, 3 clocks after grant
+    input  wire [       `CCHIP_KIND_W-1:0] s_kind,          // its kind, 3 clocks after grant
+    // ---- from the slot: record SLOT_RESULT, and the module in it
+    input  wire                            s_result_valid,  // a result comes from the slot
+    input  wire [`CCHIP_SLOT_RESULT_W-1:0] s_result_data,   // record SLOT_RESULT
+    input  wire [       `CCHIP_KIND_W-1:0] module_id,  // module in the slot, which gave the result
+    // ---- answers: record ANSWER
+    output wire                            m_valid,         // an answer is offered
+    input  wire                            m_ready,         // it is taken if m_valid = 1 as well
+    output wire [     `CCHIP_ANSWER_W-1:0] m_data,          // record ANSWER
+    input  wire                            stop,            // the slot is given no more pairs
+    // stop has lasted for 16 clocks and no pair is inside
     output wire                            quiet,
-    input  wire                            decouple,
+    input  wire                            decouple,        // the slot is cut off
+    // it is cut off, and every pair that was inside has been answered
     output wire                            decoupled,
-    output wire [ `CCHIP_PAIR_COUNT_W-1:0] outstanding,  // pairs inside
-    output wire [ `CCHIP_PAIR_COUNT_W-1:0] lost          // of the last decoupling
+    output wire [ `CCHIP_PAIR_COUNT_W-1:0] outstanding,     // pairs inside
+    // pairs that were inside when the slot was decoupled last
+    output wire [ `CCHIP_PAIR_COUNT_W-1:0] lost
 );
 
   localparam integer ID_W = CREDIT > 1 ? $clog2(CREDIT) : 1;

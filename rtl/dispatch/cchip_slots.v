@@ -14,74 +14,85 @@
 //   reset        rst: no pair; a slot whose rewriting was cut off stays decoupled until a good
 //                swap. core_rst: no pair; a slot that is decoupled keeps the reset that the swap
 //                gives it
+//   timing       6 clocks from some to the first vertex in a slot, that of the test, 6 from its
+//                result to m_result. Swaps: cchip_config_controller.
+//   rules        Every pair that is popped is answered exactly once, unless a reset comes in
+//                between. Without swaps a kind beyond every slot's module has no provider from the
+//                start, so its pairs come back open. core_rst discards the pairs alone: a swap in
+//                flight continues and ends well or not, and the slot serves what is loaded then.
+//   why          cchip_primtest_subsystem and cchip_chip_core share it, so what a swap does to
+//                pairs is written and tested once.
+//   test         With its two users: tests/unit/test_cchip_primtest_subsystem.cpp,
+//                tests/unit/test_cchip_chip_core.cpp, scripts/run campaign-swaps, make sim-chip.
 module cchip_slots #(
-    // width of a coordinate, bit, 4..20
-    parameter integer COORD_W = 16,
-    // see cchip_pr_region
+    parameter integer COORD_W = 16,  // width of a coordinate (bit); legal: 4..20
+    // registers of the primitive test's stages (clock); legal: see cchip_pr_region
     parameter integer SUBSTAGES = `CCHIP_SUBSTAGES_DEFAULT,
+    // pairs inside a slot; legal: 1..256
     parameter integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES),
-    parameter integer ABSOLUTE_PROJECTION = 0,
-    parameter integer WARPED_EXACT = 1,
-    // kinds of pairs, 3, or 4 with points
+    parameter integer ABSOLUTE_PROJECTION = 0,  // see cchip_primtest; legal: 0, 1
+    parameter integer WARPED_EXACT = 1,  // see cchip_primtest; legal: 0, 1
+    // kinds of pairs, 4 with points against triangles; the modules are 0..KINDS; legal: 3, 4
     parameter integer KINDS = 3,
-    // slots, 1..4
-    parameter integer SLOTS = 1,
-    // 1: modules are exchanged at run time
-    parameter integer SWAPS = 0,
-    // width of the configuration port, bit, 8 or 32
-    parameter integer CFG_W = 8,
-    // reset on configuration, clocks
+    parameter integer SLOTS = 1,                                      // slots; legal: 1..4
+    parameter integer SWAPS = 0,  // 1: modules are exchanged at run time; legal: 0, 1
+    parameter integer CFG_W = 8,  // width of the configuration port (bit); legal: 8, 32
+    // reset on configuration (clock); legal: from 1 on
     parameter integer ROC_CYCLES = `CCHIP_ROC_CLOCKS_DEFAULT,
-    // modules at power-up, CCHIP_RM_BLANK .. , 0..KINDS; without swaps 1..KINDS
-    parameter integer SLOT0_RM_ID = 1,
-    parameter integer SLOT1_RM_ID = 3,
-    parameter integer SLOT2_RM_ID = 2,
-    parameter integer SLOT3_RM_ID = 1,
-    // 0: partitions of an FPGA; 1: simulated reconfiguration (see cchip_pr_slot)
+    parameter integer SLOT0_RM_ID = 1,  // module of slot 0 at power-up; legal: 0..KINDS
+    parameter integer SLOT1_RM_ID = 3,  // of slot 1 (module); legal: 0..KINDS
+    parameter integer SLOT2_RM_ID = 2,  // of slot 2 (module); legal: 0..KINDS
+    parameter integer SLOT3_RM_ID = 1,  // of slot 3 (module); legal: 0..KINDS
+    // 1: simulated reconfiguration (see cchip_pr_slot); legal: 0, 1
     parameter integer SIMULATION = 0,
-    // start of the random numbers of a simulated reconfiguration, any
-    parameter integer SEED = 1
+    parameter integer SEED = 1  // start of its random numbers; legal: any
 ) (
-    input  wire                              clk,
-    input  wire                              rst,
-    input  wire                              core_rst,
-    // queues, kind k at bit k (cchip_descriptor_queues)
-    input  wire [                   KINDS:0] some,
-    output wire [                   KINDS:0] kind,
-    output wire                              look,
-    output wire                              pop,
-    output wire [                       1:0] vertex,
-    input  wire [   `CCHIP_DESCRIPTOR_W-1:0] descriptor,        // 2 clocks after pop
-    input  wire [`CCHIP_POINT_W(COORD_W)-1:0] a,                // 2 clocks after vertex
-    input  wire [`CCHIP_POINT_W(COORD_W)-1:0] b,
-    // answers
-    output wire                              m_result_valid,
+    input  wire                              clk,               // clock, rising edge
+    input  wire                              rst,               // synchronous reset, active high
+    input  wire                              core_rst,          // resets the pairs, not the swaps
+    // ---- queues, kind k at bit k (cchip_descriptor_queues)
+    input  wire [                   KINDS:0] some,              // bit k: pairs of kind k wait
+    output wire [                   KINDS:0] kind,  // one-hot: the queue that is looked at
+    output wire                              look,              // see cchip_descriptor_queues
+    output wire                              pop,               // the pair leaves its queue
+    output wire [                       1:0] vertex,            // vertex that is read
+    // its descriptor, 2 and 3 clocks after pop
+    input  wire [   `CCHIP_DESCRIPTOR_W-1:0] descriptor,
+    input  wire [`CCHIP_POINT_W(COORD_W)-1:0] a,  // operand of A, 2 clocks after vertex
+    input  wire [`CCHIP_POINT_W(COORD_W)-1:0] b,                // operand of B
+    // ---- answers
+    output wire                              m_result_valid,    // a result is offered
+    // the result is taken if m_result_valid = 1 as well
     input  wire                              m_result_ready,
-    output wire [         `CCHIP_KIND_W-1:0] m_result_kind,
-    output wire [       `CCHIP_RESULT_W-1:0] m_result_data,
-    // events, one clock: an answer of this module left, 0: of none; a pair was refused
-    output wire                              answered,
-    output wire [         `CCHIP_KIND_W-1:0] answered_module,
-    output wire                              refused_kind,
+    output wire [         `CCHIP_KIND_W-1:0] m_result_kind,     // kind of the pair
+    output wire [       `CCHIP_RESULT_W-1:0] m_result_data,     // record RESULT
+    // ---- events, one clock: an answer of this module left, 0: of none; a pair was refused
+    output wire                              answered,          // an answer left, one clock
+    output wire [         `CCHIP_KIND_W-1:0] answered_module,   // module that gave it; 0: left open
+    output wire                              refused_kind,  // a pair of kind 0 was taken, one clock
+    // a pair of a kind without a provider was taken, one clock
     output wire                              refused_provider,
-    // state of the slots: of four, those that are not there show 0
-    output wire [ 4*`CCHIP_PAIR_COUNT_W-1:0] outstanding,
-    output wire [      4*`CCHIP_RM_ID_W-1:0] rm_id,
-    output wire [                       3:0] decoupled,
-    // swaps (cchip_swaps): which kinds no slot can serve, the module that a slot shows, what a swap
-    // asks of it and what it answers, words for the configuration port
+    // ---- state of the slots: of four, those that are not there show 0
+    output wire [ 4*`CCHIP_PAIR_COUNT_W-1:0] outstanding,  // of each of four slots: pairs inside
+    output wire [      4*`CCHIP_RM_ID_W-1:0] rm_id,  // of each of four slots: module that works
+    output wire [                       3:0] decoupled,         // of each of four slots
+    // ---- swaps (cchip_swaps): which kinds no slot can serve, the module that a slot shows, what a
+    //      swap asks of it and what it answers, words for the configuration port
+    // bit k - 1: no slot can get the module of kind k
     input  wire [                 KINDS-1:0] no_provider,
-    output wire [   `CCHIP_KIND_W*SLOTS-1:0] slot_module,
-    input  wire [                 SLOTS-1:0] stop,
-    input  wire [                 SLOTS-1:0] decouple,
-    input  wire [                 SLOTS-1:0] hold_reset,
+    output wire [   `CCHIP_KIND_W*SLOTS-1:0] slot_module,       // module that a slot shows, 0: none
+    input  wire [                 SLOTS-1:0] stop,              // the slot gets no further pairs
+    input  wire [                 SLOTS-1:0] decouple,          // the slot is cut off from the rest
+    input  wire [                 SLOTS-1:0] hold_reset,        // the slot is held in reset
+    // its reset on configuration begins, one clock
     input  wire [                 SLOTS-1:0] roc_start,
-    output wire [                 SLOTS-1:0] quiet,
-    output wire [                 SLOTS-1:0] roc_busy,
-    output wire [  `CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id,
-    output wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] slot_lost,
+    output wire [                 SLOTS-1:0] quiet,             // it has no pairs and will get none
+    output wire [                 SLOTS-1:0] roc_busy,          // its reset on configuration lasts
+    output wire [  `CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id,      // module in the partition
+    output wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] slot_lost,  // pairs that it gave up in this swap
+    // a word is written to the configuration port
     input  wire                              cfg_valid,
-    input  wire [                 CFG_W-1:0] cfg_data
+    input  wire [                 CFG_W-1:0] cfg_data           // the word
 );
 
   localparam integer RESULT_W = `CCHIP_SLOT_RESULT_W;

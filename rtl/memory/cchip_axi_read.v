@@ -31,48 +31,59 @@
 //   reset        must reset the bus too: after it no beat of an earlier read may come; no request
 //                on the first clock after it
 module cchip_axi_read #(
-    // clients, 1..8
-    parameter integer CLIENTS = 3,
-    // lines that a client may be waiting for: 2, 4, 8, 16 or 32
-    parameter integer SLOTS = 16,
-    // width of the data bus, bit: 64, 128, 256 or 512
-    parameter integer DATA_W = 128,
-    // AxCACHE of reads, 0..15, and AxPROT, 0..7
+    parameter integer CLIENTS = 3,      // clients; legal: 1..8
+    parameter integer SLOTS = 16,  // lines that a client may be waiting for; legal: 2, 4, 8, 16, 32
+    parameter integer DATA_W = 128,     // width of the data bus (bit); legal: 64, 128, 256, 512
+    // ARCACHE: 3 normal memory, 15 a coherent port; legal: 0..15
     parameter integer AXI_ARCACHE = 3,
-    parameter integer AXI_PROT = 0
+    parameter integer AXI_PROT = 0      // AxPROT: 0 secure, 2 non-secure; legal: 0..7
 ) (
-    input  wire                                      clk,
-    input  wire                                      rst,
-    input  wire [                              31:0] limit,          // clocks; 0: default
-    // requests, one of each client per clock
-    input  wire [                       CLIENTS-1:0] s_valid,
-    input  wire [         CLIENTS*$clog2(SLOTS)-1:0] s_slot,
-    input  wire [                    CLIENTS*58-1:0] s_line,         // address / 64
-    // answers
-    output wire [                       CLIENTS-1:0] m_valid,        // one-hot or 0
-    output wire [                 $clog2(SLOTS)-1:0] m_slot,
-    output wire [                               2:0] m_beat,         // 0, 1, ...
-    output wire                                      m_last,
-    output wire [             `CCHIP_READ_CODE_W-1:0] m_code,         // while m_last = 1
-    output wire [                        DATA_W-1:0] m_data,
+    // ---- clock and reset
+    input  wire                                      clk,              // clock, rising edge
+    input  wire                                      rst,  // synchronous reset, active high
+    // ---- time limit
+    // read timeout in clocks, 1..2^32 - 1; 0: CCHIP_MEMORY_LIMIT_DEFAULT
+    input  wire [                              31:0] limit,
+    // ---- requests, one of each client per clock
+    input  wire [                       CLIENTS-1:0] s_valid,  // bit c: client c asks for a line
+    input  wire [         CLIENTS*$clog2(SLOTS)-1:0] s_slot,           // its place for the line
+    // address of the line, in units of 64 bytes
+    input  wire [                    CLIENTS*58-1:0] s_line,
+    // ---- answers
+    // bit c: a beat for client c; at most one bit is 1
+    output wire [                       CLIENTS-1:0] m_valid,
+    output wire [                 $clog2(SLOTS)-1:0] m_slot,           // its place
+    // number of the beat in its line: 0, 1, ...; nothing in an answer without data
+    output wire [                               2:0] m_beat,
+    output wire                                      m_last,           // last beat of the answer
+    // outcome of the read (ReadCode, docs/hardware/definitions.md), while m_last = 1
+    output wire [             `CCHIP_READ_CODE_W-1:0] m_code,
+    output wire [                        DATA_W-1:0] m_data,           // data
+    // ---- status
+    // an address is not accepted yet or beats are outstanding
     output wire                                      any_outstanding,
-    // of each ID, {client, slot}: its address is on offer or a response is outstanding
+    // one bit per ID: its address is on offer, or its response is outstanding
     output wire                 [CLIENTS*SLOTS-1:0] outstanding,
-    output wire                                      m_axi_arvalid,
-    input  wire                                      m_axi_arready,
-    output wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] m_axi_arid,
-    output wire [                              63:0] m_axi_araddr,
-    output wire [                               7:0] m_axi_arlen,
+    // ---- AXI4 read address
+    output wire                                      m_axi_arvalid,    // AXI4 read address
+    input  wire                                      m_axi_arready,    // address taken
+    output wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] m_axi_arid,        // {client, place}
+    output wire [                              63:0] m_axi_araddr,  // address, byte, multiple of 64
+    output wire [                               7:0] m_axi_arlen,  // constant: beats of a line - 1
+    // constant: all bytes of the bus
     output wire [                               2:0] m_axi_arsize,
-    output wire [                               1:0] m_axi_arburst,
-    output wire [                               3:0] m_axi_arcache,
-    output wire [                               2:0] m_axi_arprot,
-    input  wire                                      m_axi_rvalid,
+    output wire [                               1:0] m_axi_arburst,    // constant: INCR
+    output wire [                               3:0] m_axi_arcache,  // constant: normal, not cached
+    output wire [                               2:0] m_axi_arprot,     // constant 0
+    // ---- AXI4 read data
+    input  wire                                      m_axi_rvalid,     // beat
+    // 0 in reset and for one clock of each answer without data
     output wire                                      m_axi_rready,
-    input  wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] m_axi_rid,
-    input  wire [                        DATA_W-1:0] m_axi_rdata,
+    input  wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] m_axi_rid,         // ID of the read
+    input  wire [                        DATA_W-1:0] m_axi_rdata,      // data
+    // response; anything but OKAY is an error
     input  wire [                               1:0] m_axi_rresp,
-    input  wire                                      m_axi_rlast
+    input  wire                                      m_axi_rlast       // last beat of a burst
 );
 
   localparam integer SLOT_W = $clog2(SLOTS);

@@ -14,42 +14,53 @@
 //   throughput   an address on every clock
 //   cuts         all but refuse_ready to refuse and m_axi_arready to issue
 //   reset        no request, no address
+//   rules        A client asks for a slot only when its last answer for it has come. An address
+//                once on offer stays until it is accepted, even if its read is given up. Until then
+//                nothing is issued behind it, and the request that waits is refused, because the
+//                abandoned address may carry the same ID.
+//   inside       A cchip_fifo for each client, a cchip_stream_merge, a register for the first
+//                request and one for the address on offer.
+//   why          Whether beats are outstanding under an ID is looked up once, as the request
+//                becomes the first one; what can change later is one bit, the abandoned address. So
+//                no comparison of IDs lies between m_axi_arready and the next address.
 module cchip_axi_read_address #(
-    // clients, 1..8
-    parameter integer CLIENTS = 3,
-    // lines that a client may be waiting for: 2, 4, 8, 16 or 32
-    parameter integer SLOTS = 16,
-    // width of the data bus, bit: 64, 128, 256 or 512
-    parameter integer DATA_W = 128,
-    // AxCACHE of reads, 0..15, and AxPROT, 0..7
+    parameter integer CLIENTS = 3,      // clients; legal: 1..8
+    parameter integer SLOTS = 16,  // lines that a client may be waiting for; legal: 2, 4, 8, 16, 32
+    parameter integer DATA_W = 128,     // width of the data bus (bit); legal: 64, 128, 256, 512
+    // ARCACHE: 3 normal memory, 15 a coherent port; legal: 0..15
     parameter integer AXI_ARCACHE = 3,
-    parameter integer AXI_PROT = 0
+    parameter integer AXI_PROT = 0      // AxPROT: 0 secure, 2 non-secure; legal: 0..7
 ) (
-    input  wire                                      clk,
-    input  wire                                      rst,
-    // requests, one of each client per clock
-    input  wire [                       CLIENTS-1:0] s_valid,
-    input  wire [         CLIENTS*$clog2(SLOTS)-1:0] s_slot,
-    input  wire [                    CLIENTS*58-1:0] s_line,        // address / 64
-    input  wire [                 CLIENTS*SLOTS-1:0] owed,          // of each ID: beats outstanding
+    input  wire                                      clk,            // clock, rising edge
+    input  wire                                      rst,  // synchronous reset, active high
+    // ---- requests, one of each client per clock
+    input  wire [                       CLIENTS-1:0] s_valid,  // bit c: client c asks for a line
+    input  wire [         CLIENTS*$clog2(SLOTS)-1:0] s_slot,         // its slot for the line
+    input  wire [                    CLIENTS*58-1:0] s_line,  // number of the line, address / 64
+    input  wire [                 CLIENTS*SLOTS-1:0] owed,  // bit of each ID: beats are outstanding
+    // the client of the read give_up_id has been answered with TIMEOUT
     input  wire                                      give_up,
-    input  wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] give_up_id,
+    input  wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] give_up_id,      // ID of that read
+    // a refusal is accepted on this clock
     input  wire                                      refuse_ready,
-    output wire                                      refuse,        // head_id is refused
-    output wire                                      issue,         // head_id is offered next
-    output wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] head_id,
-    output wire                                      offer,         // first clock of m_axi_arid
-    output wire                                      taken,         // taken_id was accepted
-    output wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] taken_id,
-    output wire                                      m_axi_arvalid,
-    input  wire                                      m_axi_arready,
-    output wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] m_axi_arid,
-    output wire [                              63:0] m_axi_araddr,
-    output wire [                               7:0] m_axi_arlen,
-    output wire [                               2:0] m_axi_arsize,
-    output wire [                               1:0] m_axi_arburst,
-    output wire [                               3:0] m_axi_arcache,
-    output wire [                               2:0] m_axi_arprot
+    output wire                                      refuse,  // the request head_id is refused
+    // the address of head_id is put on offer; 1 clock later offer = 1
+    output wire                                      issue,
+    output wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] head_id,         // ID of the first request
+    // first clock on which m_axi_arid is on offer
+    output wire                                      offer,
+    // the address of taken_id was accepted on the clock before
+    output wire                                      taken,
+    output wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] taken_id,        // its ID
+    output wire                                      m_axi_arvalid,  // AXI4
+    input  wire                                      m_axi_arready,  // AXI4
+    output wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] m_axi_arid,      // AXI4: {client, slot}
+    output wire [                              63:0] m_axi_araddr,   // AXI4: a multiple of 64
+    output wire [                               7:0] m_axi_arlen,    // AXI4: beats of a line - 1
+    output wire [                               2:0] m_axi_arsize,   // AXI4: DATA_W
+    output wire [                               1:0] m_axi_arburst,  // AXI4: INCR
+    output wire [                               3:0] m_axi_arcache,  // AXI4: 4'b0011
+    output wire [                               2:0] m_axi_arprot    // AXI4: 0
 );
 
   localparam [31:0] CACHE = AXI_ARCACHE;

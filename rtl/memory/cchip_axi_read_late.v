@@ -9,20 +9,21 @@
 //                (cchip_timeout)
 //   cuts         every path: each output is a flip-flop
 //   reset        no read is late
+//   why          Two bits for each read instead of an age of 32 bits. A read is late up to a limit
+//                later than it could be; that is the price.
 module cchip_axi_read_late #(
-    // reads that may be live, 2..256
-    parameter integer IDS  = 48,
-    // width of the number of a read, bit: IDS <= 2^ID_W
-    parameter integer ID_W = 6
+    parameter integer IDS  = 48,  // reads that may be live; legal: 2..256
+    parameter integer ID_W = 6    // width of the number of a read (bit); legal: IDS <= 2^ID_W
 ) (
-    input  wire            clk,
-    input  wire            rst,
-    input  wire [    31:0] limit,     // clocks; 0: default
-    input  wire [ IDS-1:0] live,      // of each read: its client waits
-    input  wire [ IDS-1:0] fresh,     // it becomes live on this clock
-    output wire            found,     // found_id is late;
-    output wire [ID_W-1:0] found_id,
-    input  wire            busy       // it cannot be accepted on this clock
+    input  wire            clk,       // clock, rising edge
+    input  wire            rst,       // synchronous reset, active high
+    // longest time of a read, clocks; 0 stands for CCHIP_MEMORY_LIMIT_DEFAULT
+    input  wire [    31:0] limit,
+    input  wire [ IDS-1:0] live,      // bit of each read: its client waits for it
+    input  wire [ IDS-1:0] fresh,     // bit of each read: it becomes live on this clock
+    output wire            found,     // found_id is late
+    output wire [ID_W-1:0] found_id,  // number of that read
+    input  wire            busy       // the late read cannot be accepted on this clock
 );
 
   localparam [31:0] LAST_ID = IDS - 1;

@@ -29,50 +29,62 @@
 //   cuts         every path: each output is a flip-flop
 //   reset        must reset the bus too: after it no response to an earlier write may come
 module cchip_axi_write #(
-    // clients, 1..4
-    parameter integer CLIENTS = 2,
-    // width of the data bus, bit: 64, 128, 256 or 512
-    parameter integer DATA_W = 128,
-    // most writes that memory has to answer, 1..64
-    parameter integer OUTSTANDING = 16,
-    // width of the ID, which is 0: 1..16
-    parameter integer ID_W = 1,
-    // AxCACHE of writes, 0..15, and AxPROT, 0..7
+    parameter integer CLIENTS = 2,       // clients; legal: 1..4
+    parameter integer DATA_W = 128,      // width of the data bus (bit); legal: 64, 128, 256, 512
+    parameter integer OUTSTANDING = 16,  // writes that memory may have to answer; legal: 1..64
+    parameter integer ID_W = 1,          // width of the ID, which is always 0 (bit); legal: 1..16
+    // AWCACHE: 2 normal memory, 15 a coherent port; legal: 0..15
     parameter integer AXI_AWCACHE = 2,
-    parameter integer AXI_PROT = 0
+    parameter integer AXI_PROT = 0       // AxPROT: 0 secure, 2 non-secure; legal: 0..7
 ) (
-    input  wire                                       clk,
-    input  wire                                       rst,
-    input  wire [                               31:0] limit,         // clocks; 0: default
-    // writes, beat by beat
-    input  wire [                        CLIENTS-1:0] s_valid,
-    output wire [                        CLIENTS-1:0] s_ready,       // one-hot or 0
-    input  wire [                        CLIENTS-1:0] s_last,
-    // address in beats: / (DATA_W / 8), of the first beat
+    // ---- clock and reset
+    input  wire                                       clk,              // clock, rising edge
+    input  wire                                       rst,  // synchronous reset, active high
+    // ---- time limit
+    // write timeout in clocks, 1..2^32 - 1; 0: CCHIP_MEMORY_LIMIT_DEFAULT
+    input  wire [                               31:0] limit,
+    // ---- requests: writes, beat by beat
+    input  wire [                        CLIENTS-1:0] s_valid,  // bit c: client c offers a beat
+    // bit c: its beat is taken; at most one bit is 1
+    output wire [                        CLIENTS-1:0] s_ready,
+    input  wire [                        CLIENTS-1:0] s_last,           // last beat of the write
+    // address of the write in units of a beat, DATA_W / 8 bytes; looked at with its first beat
     input  wire [CLIENTS*(64-$clog2(DATA_W/8))-1:0] s_address,
-    input  wire [                 CLIENTS*DATA_W-1:0] s_data,
-    input  wire [               CLIENTS*DATA_W/8-1:0] s_strb,
-    // answers
-    output wire [                        CLIENTS-1:0] m_valid,       // one-hot or 0
+    input  wire [                 CLIENTS*DATA_W-1:0] s_data,           // data
+    input  wire [               CLIENTS*DATA_W/8-1:0] s_strb,           // bit i: byte i is written
+    // ---- answers
+    // bit c: the oldest write of client c without an answer is answered; at most one bit is 1
+    output wire [                        CLIENTS-1:0] m_valid,
+    // outcome of the write (WriteCode, docs/hardware/definitions.md)
     output wire [             `CCHIP_WRITE_CODE_W-1:0] m_code,
+    // ---- status
+    // memory has to answer writes, those that were given up included
     output wire                                       any_outstanding,
-    output wire                                       m_axi_awvalid,
-    input  wire                                       m_axi_awready,
-    output wire [                           ID_W-1:0] m_axi_awid,
+    // ---- AXI4 write address
+    output wire                                       m_axi_awvalid,    // AXI4 write address
+    input  wire                                       m_axi_awready,    // address taken
+    output wire [                           ID_W-1:0] m_axi_awid,       // constant 0
+    // address, byte, multiple of a beat
     output wire [                               63:0] m_axi_awaddr,
-    output wire [                                7:0] m_axi_awlen,
+    output wire [                                7:0] m_axi_awlen,      // beats - 1
+    // constant: all bytes of the bus
     output wire [                                2:0] m_axi_awsize,
-    output wire [                                1:0] m_axi_awburst,
+    output wire [                                1:0] m_axi_awburst,    // constant: INCR
+    // constant: normal, neither cached nor buffered
     output wire [                                3:0] m_axi_awcache,
-    output wire [                                2:0] m_axi_awprot,
-    output wire                                       m_axi_wvalid,
-    input  wire                                       m_axi_wready,
-    output wire [                         DATA_W-1:0] m_axi_wdata,
-    output wire [                       DATA_W/8-1:0] m_axi_wstrb,
-    output wire                                       m_axi_wlast,
-    input  wire                                       m_axi_bvalid,
-    output wire                                       m_axi_bready,
+    output wire [                                2:0] m_axi_awprot,     // constant 0
+    // ---- AXI4 write data
+    output wire                                       m_axi_wvalid,     // AXI4 write data
+    input  wire                                       m_axi_wready,     // beat taken
+    output wire [                         DATA_W-1:0] m_axi_wdata,      // data
+    output wire [                       DATA_W/8-1:0] m_axi_wstrb,      // bytes that are written
+    output wire                                       m_axi_wlast,      // last beat of its write
+    // ---- AXI4 write response
+    input  wire                                       m_axi_bvalid,     // response
+    output wire                                       m_axi_bready,     // 0 in reset only
+    // a response with another ID than 0 is dropped
     input  wire [                           ID_W-1:0] m_axi_bid,
+    // response; anything but OKAY is an error
     input  wire [                                1:0] m_axi_bresp
 );
 

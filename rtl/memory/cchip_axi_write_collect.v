@@ -12,33 +12,40 @@
 //   throughput   a beat per clock
 //   cuts         every path: each output is a flip-flop
 //   reset        no write
+//   rules        For the clients those of cchip_axi_write. Beats leave in the order of their
+//                writes, possibly before m_write_valid.
+//   inside       A cchip_arbiter of the clients, a cchip_onehot_mux for their beats, and two
+//                cchip_fifo of 16 entries, for writes and for beats.
 module cchip_axi_write_collect #(
-    // clients, 1..4
-    parameter integer CLIENTS = 2,
-    // width of the data bus, bit: 64, 128, 256 or 512
-    parameter integer DATA_W = 128
+    parameter integer CLIENTS = 2,  // clients; legal: 1..4
+    parameter integer DATA_W = 128  // width of the data bus (bit); legal: 64, 128, 256, 512
 ) (
-    input  wire                                       clk,
-    input  wire                                       rst,
-    // writes, beat by beat
-    input  wire [                        CLIENTS-1:0] s_valid,
-    output wire [                        CLIENTS-1:0] s_ready,       // one-hot or 0
+    input  wire                                       clk,             // clock, rising edge
+    input  wire                                       rst,  // synchronous reset, active high
+    // ---- writes, beat by beat
+    input  wire [                        CLIENTS-1:0] s_valid,  // bit c: client c offers a beat
+    // bit c: the beat is accepted if s_valid[c] = 1 as well
+    output wire [                        CLIENTS-1:0] s_ready,
+    // bit c: it is the last one of the write
     input  wire [                        CLIENTS-1:0] s_last,
-    // address in beats: / (DATA_W / 8), of the first beat
+    // address of the first beat, in beats; address in beats: / (DATA_W / 8), of the first beat
     input  wire [CLIENTS*(64-$clog2(DATA_W/8))-1:0] s_address,
-    input  wire [                 CLIENTS*DATA_W-1:0] s_data,
-    input  wire [               CLIENTS*DATA_W/8-1:0] s_strb,
+    input  wire [                 CLIENTS*DATA_W-1:0] s_data,          // data
+    input  wire [               CLIENTS*DATA_W/8-1:0] s_strb,          // strobes
     // a write whose beats are all here
     output wire                                       m_write_valid,
+    // it is accepted if m_write_valid = 1 as well
     input  wire                                       m_write_ready,
-    output wire [                                1:0] m_write_client,
-    output wire [                                2:0] m_write_length,  // beats - 1
+    output wire [                                1:0] m_write_client,  // its client
+    output wire [                                2:0] m_write_length,  // its beats - 1
+    // address of its first beat, in beats
     output wire [        64-$clog2(DATA_W/8)-1:0] m_write_address,
-    // beats
-    output wire                                       m_beat_valid,
+    // ---- beats
+    output wire                                       m_beat_valid,    // a beat
+    // it is accepted if m_beat_valid = 1 as well
     input  wire                                       m_beat_ready,
-    output wire [                       DATA_W/8-1:0] m_beat_strb,
-    output wire [                         DATA_W-1:0] m_beat_data
+    output wire [                       DATA_W/8-1:0] m_beat_strb,     // its strobes
+    output wire [                         DATA_W-1:0] m_beat_data      // its data
 );
 
   localparam integer STRB_W = DATA_W / 8;

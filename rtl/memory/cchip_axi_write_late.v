@@ -12,15 +12,15 @@
 //   cuts         all but answered to timeout
 //   reset        no write is late
 module cchip_axi_write_late #(
-    // width of the count of writes, bit
-    parameter integer COUNT_W = 5
+    parameter integer COUNT_W = 5  // width of the count of writes (bit); legal: >= 1
 ) (
-    input  wire               clk,
-    input  wire               rst,
-    input  wire [       31:0] limit,     // clocks; 0: default
-    input  wire [COUNT_W-1:0] waiting,   // writes that a client waits for
-    input  wire               answered,  // the first of them is answered
-    output wire               timeout    // the first of them is given up
+    input  wire               clk,       // clock, rising edge
+    input  wire               rst,       // synchronous reset, active high
+    // longest time of a write, clocks; 0 stands for CCHIP_MEMORY_LIMIT_DEFAULT
+    input  wire [       31:0] limit,
+    input  wire [COUNT_W-1:0] waiting,   // writes that clients wait for
+    input  wire               answered,  // the first of them is answered on this clock
+    output wire               timeout    // the first of them is given up on this clock
 );
 
   wire tick;

@@ -15,37 +15,46 @@
 //   cuts         the AXI side: its outputs are flip-flops, and m_axi_awready and m_axi_wready end
 //                in one
 //   reset        nothing is sent
+//   rules        If its client is answered with TIMEOUT before all beats have left, the rest of
+//                them is taken from the queue at once and goes out without strobes, since AXI wants
+//                the burst complete.
+//   inside       Two counts of beats, of those that leave the queue (take_*) and of those that are
+//                sent (send_*). They run together until the client has been answered. Two
+//                cchip_skid_buffer towards AXI.
 module cchip_axi_write_send #(
-    // width of the data bus, bit: 64, 128, 256 or 512
-    parameter integer DATA_W = 128
+    parameter integer DATA_W = 128  // width of the data bus (bit); legal: 64, 128, 256, 512
 ) (
-    input  wire                              clk,
-    input  wire                              rst,
-    // a write whose beats are all here
-    input  wire                              s_write_valid,
+    input  wire                              clk,             // clock, rising edge
+    input  wire                              rst,             // synchronous reset, active high
+    input  wire                              s_write_valid,   // a write whose beats are all here
+    // it is accepted if s_write_valid = 1 as well
     output wire                              s_write_ready,
-    input  wire [                       1:0] s_write_client,
-    input  wire [                       2:0] s_write_length,  // beats - 1
-    input  wire [64-$clog2(DATA_W/8)-1:0] s_write_address,
-    input  wire                              s_beat_valid,
+    input  wire [                       1:0] s_write_client,  // its client
+    input  wire [                       2:0] s_write_length,  // its beats - 1
+    input  wire [64-$clog2(DATA_W/8)-1:0] s_write_address,    // address of its first beat, in beats
+    input  wire                              s_beat_valid,    // a beat
+    // it is accepted if s_beat_valid = 1 as well
     output wire                              s_beat_ready,
-    input  wire [              DATA_W/8-1:0] s_beat_strb,
-    input  wire [                DATA_W-1:0] s_beat_data,
-    input  wire                              awaited,         // a client waits for a write
-    input  wire                              room,            // another one may be issued
-    input  wire                              owed,            // the response to one given up is due
+    input  wire [              DATA_W/8-1:0] s_beat_strb,     // its strobes
+    input  wire [                DATA_W-1:0] s_beat_data,     // its data
+    input  wire                              awaited,  // a client waits for a write in flight
+    input  wire                              room,            // another write may be in flight
+    // the response to a write that was given up is outstanding
+    input  wire                              owed,
     output wire                              issue,           // this write is sent
-    output wire                              refused,         // a write is refused, that of
-    output wire [                       1:0] refused_client,
-    output wire                              m_axi_awvalid,
-    input  wire                              m_axi_awready,
-    output wire [                      63:0] m_axi_awaddr,
-    output wire [                       7:0] m_axi_awlen,
-    output wire                              m_axi_wvalid,
-    input  wire                              m_axi_wready,
-    output wire [                DATA_W-1:0] m_axi_wdata,
+    // a write was refused, all its beats are gone
+    output wire                              refused,
+    output wire [                       1:0] refused_client,  // its client
+    output wire                              m_axi_awvalid,   // AXI4
+    input  wire                              m_axi_awready,   // AXI4
+    output wire [                      63:0] m_axi_awaddr,    // AXI4
+    output wire [                       7:0] m_axi_awlen,     // AXI4: beats - 1
+    output wire                              m_axi_wvalid,    // AXI4
+    input  wire                              m_axi_wready,    // AXI4
+    output wire [                DATA_W-1:0] m_axi_wdata,     // AXI4
+    // AXI4; 0 once the client has been answered
     output wire [              DATA_W/8-1:0] m_axi_wstrb,
-    output wire                              m_axi_wlast
+    output wire                              m_axi_wlast      // AXI4
 );
 
   localparam integer STRB_W = DATA_W / 8;

@@ -31,53 +31,62 @@
 //   cuts         every path: each output is a flip-flop
 //   reset        invalidates every line; takes 2^SET_W clocks, requests wait
 module cchip_cache #(
-    // size of the data, KiB: 1, 2, 4 ... 1024
-    parameter integer CACHE_KB = 128,
-    // places of a port: 2, 4, 8, 16, 32 or 64
+    parameter integer CACHE_KB = 128,  // size of the data (KiB); legal: 1, 2, 4 ... 1024
+    // lines that a port may be waiting for; legal: 2, 4, 8, 16, 32, 64
     parameter integer PLACES = 32,
-    // lines in flight: 2, 4, 8, 16 or 32
-    parameter integer MISSES = 32,
-    // width of a line's number (address / 64), bit, more than SET_W and at most 58
+    parameter integer MISSES = 32,     // lines in flight from memory; legal: 2, 4, 8, 16, 32
+    // width of a line's number, address / 64 (bit); legal: 4 + log2 CACHE_KB .. 58
     parameter integer LINE_W = 32,
-    // ranges of lines to lock, 1..4
-    parameter integer LOCKS = 2,
-    // width of the data bus of memory, bit: 64, 128, 256 or 512
+    parameter integer LOCKS = 2,       // ranges of lines to lock; legal: 1..4
+    // width of the data bus of memory (bit); legal: 64, 128, 256, 512
     parameter integer DATA_W = 128
 ) (
-    input  wire                            clk,
-    input  wire                            rst,
-    // requests and answers of the two ports
-    input  wire [                     1:0] s_valid,
-    input  wire [    2*$clog2(PLACES)-1:0] s_place,
-    input  wire [            2*LINE_W-1:0] s_line,
-    output wire [                     1:0] m_valid,
-    output wire [    2*$clog2(PLACES)-1:0] m_place,
+    // ---- clock and reset
+    input  wire                            clk,                 // clock, rising edge
+    input  wire                            rst,                 // synchronous reset, active high
+    // ---- requests and answers of the two ports
+    input  wire [                     1:0] s_valid,             // bit p: port p asks for a line
+    input  wire [    2*$clog2(PLACES)-1:0] s_place,             // its place for the line
+    input  wire [            2*LINE_W-1:0] s_line,              // number of the line
+    // ---- answers
+    output wire [                     1:0] m_valid,             // bit p: an answer of port p
+    output wire [    2*$clog2(PLACES)-1:0] m_place,             // its place
+    // outcome of the read (ReadCode, docs/hardware/definitions.md)
     output wire [2*`CCHIP_READ_CODE_W-1:0] m_code,
-    output wire [                   511:0] m_data,            // if m_code is CCHIP_READ_OK: a beat
-    // lines to lock; none if first > last
-    input  wire [        LOCKS*LINE_W-1:0] lock_first,
+    // a beat of 256 bits of the line, if m_code is OK: its lower half with m_valid, its upper one
+    // on the next clock, on which m_place stays; port 0 in the lower half
+    output wire [                   511:0] m_data,
+    // ---- locked lines: lines to lock; none if first > last
+    input  wire [        LOCKS*LINE_W-1:0] lock_first,          // first line of each range to lock
+    // last line of each range; a range with first > last is empty
     input  wire [        LOCKS*LINE_W-1:0] lock_last,
-    // lines to invalidate
-    input  wire                            invalidate_valid,
+    // ---- invalidation
+    input  wire                            invalidate_valid,    // command: invalidate lines
+    // no command is at work; with invalidate_valid: taken
     output wire                            invalidate_ready,
-    input  wire [              LINE_W-1:0] invalidate_first,
-    input  wire [              LINE_W-1:0] invalidate_last,
-    // client of cchip_axi_read
-    output wire                            m_read_valid,
-    output wire [      $clog2(MISSES)-1:0] m_read_slot,
-    output wire [                    57:0] m_read_line,
-    input  wire                            s_read_valid,
-    input  wire [      $clog2(MISSES)-1:0] s_read_slot,
-    input  wire [                     2:0] s_read_beat,
-    input  wire                            s_read_last,
+    input  wire [              LINE_W-1:0] invalidate_first,    // first line to invalidate
+    input  wire [              LINE_W-1:0] invalidate_last,     // last line to invalidate
+    // ---- read requests: client of cchip_axi_read
+    output wire                            m_read_valid,        // request to cchip_axi_read
+    output wire [      $clog2(MISSES)-1:0] m_read_slot,         // place of the line there
+    output wire [                    57:0] m_read_line,         // number of the line
+    // ---- read answers
+    input  wire                            s_read_valid,  // beat of an answer of cchip_axi_read
+    input  wire [      $clog2(MISSES)-1:0] s_read_slot,         // its place
+    input  wire [                     2:0] s_read_beat,         // number of the beat in its line
+    input  wire                            s_read_last,         // last beat
+    // outcome of the read, while s_read_last = 1
     input  wire [  `CCHIP_READ_CODE_W-1:0] s_read_code,
-    input  wire [              DATA_W-1:0] s_read_data,
-    input  wire [              MISSES-1:0] s_read_outstanding,  // its slots' bits of outstanding
-    // what happens on this clock, for counters; of each port
-    output wire [                     1:0] count_hit,         // answered at once
-    output wire [                     1:0] count_miss,        // asks memory
-    output wire [                     1:0] count_wait,        // waits for a line in flight
-    output wire [                     1:0] count_again        // is looked up again
+    input  wire [              DATA_W-1:0] s_read_data,         // data
+    input  wire [              MISSES-1:0] s_read_outstanding,  // outstanding of its slots
+    // ---- events to count: what happens on this clock, for counters; of each port
+    output wire [                     1:0] count_hit,  // bit p: port p answered a request at once
+    // bit p: a request of port p needs a line from memory
+    output wire [                     1:0] count_miss,
+    // bit p: a request of port p waits for a line in flight
+    output wire [                     1:0] count_wait,
+    // bit p: a request of port p is looked up again
+    output wire [                     1:0] count_again
 );
 
   localparam integer PLACE_W = $clog2(PLACES);

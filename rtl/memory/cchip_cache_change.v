@@ -9,48 +9,55 @@
 //   latency      1 clock from stage 6 to the write and to allocate
 //   cuts         entry_*, change_by and allocate*; grant, granted and walk_next follow stage 6
 //   reset        nothing is changed
+//   rules        A port whose change is not made looks its request up again.
+//   why          One writer keeps the two ports consistent: a lookup whose set it has changed is
+//                repeated, instead of a forwarding path for each stage. Whether any frame is
+//                granted does not depend on the turn, so the free slot leaves its pool early in the
+//                clock.
 module cchip_cache_change #(
-    // slots of lines in flight: 2, 4, 8, 16 or 32
-    parameter integer MISSES = 32,
-    // width of a set's number, bit
-    parameter integer SET_W = 10,
-    // width of a line's number, bit, more than SET_W
-    parameter integer LINE_W = 32
+    parameter integer MISSES = 32,  // slots of lines in flight; legal: 2, 4, 8, 16, 32
+    parameter integer SET_W = 10,   // width of a set's number (bit); legal: >= 3
+    parameter integer LINE_W = 32   // width of a line's number (bit); legal: SET_W + 1 .. 58
 ) (
-    input  wire                                       clk,
-    input  wire                                       rst,
-    input  wire                                       running,         // 0: clear both entries
-    input  wire [                          SET_W-1:0] clear_set,       // of this set
-    // port 0: a fill without data
-    input  wire                                       kill,
-    input  wire [                 $clog2(MISSES)-1:0] kill_slot,
-    input  wire [                                1:0] kill_way,        // one-hot
-    // port 1: a walk has looked a set up
+    input  wire                                       clk,             // clock, rising edge
+    input  wire                                       rst,  // synchronous reset, active high
+    input  wire                                       running,         // 0: entries are cleared
+    input  wire [                          SET_W-1:0] clear_set,       // both entries of this set
+    // ---- port 0: a fill without data
+    input  wire                                       kill,  // port 0: a line came without data
+    input  wire [                 $clog2(MISSES)-1:0] kill_slot,       // its slot
+    input  wire [                                1:0] kill_way,        // its way, one-hot
+    // ---- port 1: a walk has looked a set up
+    // port 1: a set has been looked up for an invalidation
     input  wire                                       walk,
-    input  wire                                       walk_stale,      // that has changed since
-    input  wire                                       walk_hits,       // lines of the range in it
-    input  wire [                                1:0] walk_ways,
+    input  wire                                       walk_stale,      // it has changed meanwhile
+    // there are lines of the range in it
+    input  wire                                       walk_hits,
+    input  wire [                                1:0] walk_ways,       // ways that have one
     input  wire [             2*($clog2(MISSES)+1)-1:0] walk_keep,     // {turn, slot} of each way
     output wire                                       walk_next,       // the set is done
-    // both ports: a line wants a frame
+    // ---- both ports: a line wants a frame
+    // bit p: port p wants a frame for its line
     input  wire [                                1:0] want,
-    input  wire [                                1:0] want_way,
+    input  wire [                                1:0] want_way,        // bit p: its way
+    // bit p: the line is to be locked
     input  wire [                                1:0] want_locked,
-    input  wire [                                1:0] want_turn,
-    input  wire [                       2*LINE_W-1:0] line,            // of stage 6
-    input  wire [                 $clog2(MISSES)-1:0] free_slot,
-    output wire [                                1:0] grant,
-    output wire                                       granted,         // |grant
-    // the write, {valid, locked, turn, slot, tag} of each way
-    output wire [                                1:0] entry_write,
-    output wire [                          SET_W-1:0] entry_set,
+    input  wire [                                1:0] want_turn,       // bit p: turn of the entry
+    input  wire [                       2*LINE_W-1:0] line,  // line in stage 6 of each port
+    input  wire [                 $clog2(MISSES)-1:0] free_slot,       // slot that the line gets
+    output wire [                                1:0] grant,  // bit p: port p gets the frame
+    output wire                                       granted,         // one of them does; |grant
+    // ---- the write, {valid, locked, turn, slot, tag} of each way
+    output wire [                                1:0] entry_write,  // ways whose entry is written
+    output wire [                          SET_W-1:0] entry_set,       // set of the write
+    // {valid, locked, turn, slot, tag} of each way
     output wire [2*(3+$clog2(MISSES)+LINE_W-SET_W)-1:0] entry_data,
-    output wire [                                1:0] change_by,       // ports that it comes from
-    // a line that gets a frame
-    output wire                                       allocate,
-    output wire [                 $clog2(MISSES)-1:0] allocate_slot,
+    // bit p: the change comes from port p
+    output wire [                                1:0] change_by,
+    output wire                                       allocate,        // a line gets a frame
+    output wire [                 $clog2(MISSES)-1:0] allocate_slot,   // its slot
     output wire [                            SET_W:0] allocate_frame,  // {set, way}
-    output wire [                         LINE_W-1:0] allocate_line
+    output wire [                         LINE_W-1:0] allocate_line    // its line
 );
 
   localparam integer SLOT_W = $clog2(MISSES);

@@ -18,46 +18,53 @@
 //   cuts         every path
 //   reset        every slot is free after MISSES clocks; memory must not answer reads from before
 module cchip_cache_fill #(
-    // slots: 2, 4, 8, 16 or 32
-    parameter integer MISSES = 32,
-    // width of a frame's number, bit
-    parameter integer FRAME_W = 12,
-    // width of the data bus, bit: 64, 128, 256 or 512
-    parameter integer DATA_W = 128
+    parameter integer MISSES = 32,   // slots (line); legal: 2, 4, 8, 16, 32
+    parameter integer FRAME_W = 12,  // width of a frame's number (bit); legal: >= 1
+    parameter integer DATA_W = 128   // width of the data bus (bit); legal: 64, 128, 256, 512
 ) (
-    input  wire                          clk,
-    input  wire                          rst,
-    // a free slot; it has a frame on the clock after free_take or later
-    output wire                          free_valid,
-    output wire [    $clog2(MISSES)-1:0] free_slot,
-    input  wire                          free_take,
-    input  wire                          allocate,
-    input  wire [    $clog2(MISSES)-1:0] allocate_slot,
-    input  wire [           FRAME_W-1:0] allocate_frame,
-    output wire [            MISSES-1:0] held,            // allocated
-    output wire [            MISSES-1:0] filled,          // the data are in the frame
-    output wire                          exhausted,       // every slot is lost
-    // answers of cchip_axi_read
+    input  wire                          clk,                 // clock, rising edge
+    input  wire                          rst,                 // synchronous reset, active high
+    // ---- a free slot; it has a frame on the clock after free_take or later
+    output wire                          free_valid,          // a slot is free
+    output wire [    $clog2(MISSES)-1:0] free_slot,           // which
+    input  wire                          free_take,  // it is taken; only while free_valid = 1
+    input  wire                          allocate,            // a taken slot gets its frame
+    input  wire [    $clog2(MISSES)-1:0] allocate_slot,       // the slot
+    input  wire [           FRAME_W-1:0] allocate_frame,      // its frame
+    // bit s: slot s has a frame, which must not be given away
+    output wire [            MISSES-1:0] held,
+    output wire [            MISSES-1:0] filled,  // bit s: the data of slot s are in its frame
+    // every slot is lost: the responses to all of them are outstanding
+    output wire                          exhausted,
+    // ---- answers of cchip_axi_read
+    // a beat of a line, or an answer without data
     input  wire                          s_read_valid,
-    input  wire [    $clog2(MISSES)-1:0] s_read_slot,
-    input  wire [                   2:0] s_read_beat,
-    input  wire                          s_read_last,
+    input  wire [    $clog2(MISSES)-1:0] s_read_slot,         // its slot; it is held
+    input  wire [                   2:0] s_read_beat,         // number of the beat in its line
+    input  wire                          s_read_last,         // the last one of the answer
+    // outcome of the read (ReadCode, docs/hardware/definitions.md), while s_read_last = 1
     input  wire [`CCHIP_READ_CODE_W-1:0] s_read_code,
-    input  wire [            DATA_W-1:0] s_read_data,
+    input  wire [            DATA_W-1:0] s_read_data,         // data
+    // a response to the slot is outstanding
     input  wire [            MISSES-1:0] s_read_outstanding,
-    // a line goes into its frame; must be taken
-    input  wire                          free,
+    // ---- a line goes into its frame; must be taken
+    input  wire                          free,  // a line may go; 0 on the clock after fill_valid
+    // a line goes into its frame; it must be taken
     output wire                          fill_valid,
-    output wire [    $clog2(MISSES)-1:0] fill_slot,
+    output wire [    $clog2(MISSES)-1:0] fill_slot,           // its slot
+    // outcome of its read; its data count only if that is OK
     output wire [`CCHIP_READ_CODE_W-1:0] fill_code,
-    output wire [           FRAME_W-1:0] fill_frame,
+    output wire [           FRAME_W-1:0] fill_frame,          // its frame
+    // lower half of its data 5 clocks after fill_valid, upper half on the next
     output wire [                 255:0] fill_data,
-    // who waits for a line
-    output wire                          collect,
-    output wire [    $clog2(MISSES)-1:0] collect_slot,
-    output wire [`CCHIP_READ_CODE_W-1:0] serve_code,      // from collect on
+    // ---- who waits for a line
+    output wire                          collect,  // those who wait for this line are to be served
+    output wire [    $clog2(MISSES)-1:0] collect_slot,        // the line's slot
+    // from collect until the next one: outcome of the line's read
+    output wire [`CCHIP_READ_CODE_W-1:0] serve_code,
+    // from collect until the next one: the line's frame
     output wire [           FRAME_W-1:0] serve_frame,
-    input  wire [                   1:0] serving          // ports that have not served all of them
+    input  wire [                   1:0] serving  // bit p: port p has not yet served all of them
 );
 
   localparam integer MISS_W = $clog2(MISSES);

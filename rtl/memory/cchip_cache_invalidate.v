@@ -9,31 +9,31 @@
 //   latency      9 clocks for each set of the range, at most 2^SET_W of them
 //   cuts         every path
 //   reset        clears the entries, one set per clock: running = 0 meanwhile
+//   why          A set is looked up by a port as a request is, so the walk needs no port of its own
+//                into the entries. When it is over, no answer carries data from before the command:
+//                reads that were in flight have ended, and the pipeline has run empty.
 module cchip_cache_invalidate #(
-    // width of a set's number, bit
-    parameter integer SET_W = 10,
-    // width of a line's number, bit, more than SET_W
-    parameter integer LINE_W = 32,
-    // slots of lines in flight
-    parameter integer MISSES = 32
+    parameter integer SET_W = 10,   // width of a set's number (bit); legal: >= 3
+    parameter integer LINE_W = 32,  // width of a line's number (bit); legal: SET_W + 1 .. 58
+    parameter integer MISSES = 32   // slots of lines in flight; legal: 2, 4, 8, 16, 32
 ) (
-    input  wire              clk,
-    input  wire              rst,
-    input  wire              s_valid,
+    input  wire              clk,         // clock, rising edge
+    input  wire              rst,         // synchronous reset, active high
+    input  wire              s_valid,     // a command
+    // it is accepted if s_valid = 1 as well; 1 again: the last command is done
     output wire              s_ready,
-    input  wire [LINE_W-1:0] s_first,
-    input  wire [LINE_W-1:0] s_last,
-    output wire              running,     // 0: the entries are cleared, this set:
-    // a set to look up
-    output wire              walk_valid,
-    output wire [ SET_W-1:0] walk_set,
-    output wire [LINE_W-1:0] first,       // lines to invalidate
-    output wire [LINE_W-1:0] last,
-    // its lookup is decided upon,
-    input  wire              walk_done,
-    input  wire              walk_next,   // and nothing of it has to be looked up again
-    input  wire [MISSES-1:0] held,        // of each slot: its line is in flight
-    input  wire              serving      // a request is served whose line has come
+    input  wire [LINE_W-1:0] s_first,     // first line to invalidate
+    input  wire [LINE_W-1:0] s_last,      // last line to invalidate
+    output wire              running,     // 0: the entries are being cleared, those of walk_set
+    output wire              walk_valid,  // look a set up
+    output wire [ SET_W-1:0] walk_set,    // this one
+    output wire [LINE_W-1:0] first,       // first line to invalidate
+    output wire [LINE_W-1:0] last,        // last line to invalidate
+    input  wire              walk_done,   // its lookup is decided upon
+    // with walk_done: all lines of the range are out of it; else it is looked up again
+    input  wire              walk_next,
+    input  wire [MISSES-1:0] held,        // bit of each slot: its line is in flight
+    input  wire              serving      // a request whose line has come is being served
 );
 
   localparam [31:0] ONE = 1;

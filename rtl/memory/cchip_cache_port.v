@@ -20,88 +20,112 @@
 //   own          of port 0 a fill, of port 1 a set to invalidate: each port leaves the outputs of
 //                the other kind at values that mean nothing
 //   reset        nothing inside
+//   timing       7 clocks from s_valid of a port that is free to m_valid for a line that is there;
+//                a lookup every two clocks: what it finds has two beats of 256 bits, one after the
+//                other.
+//   rules        Stage 0 gives the clock to a fill, a set or a request in the order that
+//                cchip_cache lists; new and repeated requests come from cchip_cache_requests. In
+//                stage 6 a lookup is a hit, falls asleep, asks for a frame, is refused with OWED
+//                because every slot is lost, or is looked up again. The last happens if its set has
+//                changed since stage 1, if no frame of the set may be reallocated, or if the grant
+//                went to another port.
+//   inside       Two cchip_cache_way, cchip_cache_requests, cchip_cache_waiters. stale_q2 to
+//                stale_q6 follow a lookup and remember whether its set has changed; the changes
+//                that are still in the two stages behind stage 6 are compared beside it (same_q6).
 module cchip_cache_port #(
-    // places: 2, 4, 8, 16, 32 or 64
-    parameter integer PLACES = 32,
-    // slots of lines in flight: 2, 4, 8, 16 or 32
-    parameter integer MISSES = 32,
-    // width of a set's number, bit
-    parameter integer SET_W = 10,
-    // width of a line's number, bit, more than SET_W
-    parameter integer LINE_W = 32,
-    // ranges of lines to lock, 1..4
-    parameter integer LOCKS = 2
+    parameter integer PLACES = 32,  // places of a port (line); legal: 2, 4, 8, 16, 32, 64
+    parameter integer MISSES = 32,  // slots of lines in flight; legal: 2, 4, 8, 16, 32
+    parameter integer SET_W = 10,   // width of a set's number (bit); legal: >= 3
+    parameter integer LINE_W = 32,  // width of a line's number (bit); legal: SET_W + 1 .. 58
+    parameter integer LOCKS = 2     // ranges of lines to lock; legal: 1..4
 ) (
-    input  wire                                     clk,
-    input  wire                                     rst,
-    input  wire                                     running,         // 0: entries are cleared
-    // requests and answers
-    input  wire                                     s_valid,
-    input  wire [               $clog2(PLACES)-1:0] s_place,
-    input  wire [                       LINE_W-1:0] s_line,
-    output wire                                     m_valid,
-    output wire [               $clog2(PLACES)-1:0] m_place,
+    input  wire                                     clk,               // clock, rising edge
+    input  wire                                     rst,  // synchronous reset, active high
+    input  wire                                     running,  // 0: the entries are being cleared
+    // ---- requests and answers
+    input  wire                                     s_valid,           // a request
+    input  wire [               $clog2(PLACES)-1:0] s_place,           // its place
+    input  wire [                       LINE_W-1:0] s_line,            // its line
+    output wire                                     m_valid,           // an answer
+    output wire [               $clog2(PLACES)-1:0] m_place,           // its place
+    // outcome of the read (ReadCode, docs/hardware/definitions.md)
     output wire [           `CCHIP_READ_CODE_W-1:0] m_code,
-    output wire [                              3:0] count,           // {again, wait, miss, hit}
-    input  wire [                 LOCKS*LINE_W-1:0] lock_first,
-    input  wire [                 LOCKS*LINE_W-1:0] lock_last,
-    // what the port has to do on its own: a fill, while free, or a set to invalidate, told ahead
+    // what happened: {looked up again, waits, asks memory, hit}
+    output wire [                              3:0] count,
+    input  wire [                 LOCKS*LINE_W-1:0] lock_first,  // first line of each range to lock
+    input  wire [                 LOCKS*LINE_W-1:0] lock_last,         // last line of each range
+    // ---- what the port has to do on its own: a fill, while free, or a set to invalidate, told
+    //      ahead
+    // the port took nothing on the clock before: a fill may come
     output wire                                     free,
-    input  wire                                     own_soon,        // own_valid on the next clock
+    // own_valid is 1 on the next clock, for a set to invalidate
+    input  wire                                     own_soon,
+    // the port fills a frame, while free, or looks up a set to invalidate, told by own_soon
     input  wire                                     own_valid,
-    input  wire [                        SET_W-1:0] own_set,
-    input  wire                                     fill_way,
-    input  wire [               $clog2(MISSES)-1:0] fill_slot,
-    input  wire [           `CCHIP_READ_CODE_W-1:0] fill_code,
-    input  wire [                       LINE_W-1:0] invalidate_first,
-    input  wire [                       LINE_W-1:0] invalidate_last,
-    // lines in flight
-    input  wire                                     free_valid,
-    input  wire [               $clog2(MISSES)-1:0] free_slot,
-    input  wire                                     exhausted,
-    input  wire [                       MISSES-1:0] held,
+    input  wire [                        SET_W-1:0] own_set,           // its set
+    input  wire                                     fill_way,  // way of the frame that is filled
+    input  wire [               $clog2(MISSES)-1:0] fill_slot,         // slot of the line
+    input  wire [           `CCHIP_READ_CODE_W-1:0] fill_code,         // outcome of its read
+    input  wire [                       LINE_W-1:0] invalidate_first,  // first line to invalidate
+    input  wire [                       LINE_W-1:0] invalidate_last,   // last line to invalidate
+    // ---- lines in flight
+    input  wire                                     free_valid,        // there is a free slot
+    input  wire [               $clog2(MISSES)-1:0] free_slot,         // its number
+    input  wire                                     exhausted,         // every slot is lost
+    input  wire [                       MISSES-1:0] held,  // bit of each slot: it has a frame
+    // bit of each slot: its data are in the frame
     input  wire [                       MISSES-1:0] filled,
-    input  wire                                     allocate,
-    input  wire [               $clog2(MISSES)-1:0] allocate_slot,
-    input  wire [                          SET_W:0] allocate_frame,  // {set, way}
-    input  wire                                     collect,
-    input  wire [               $clog2(MISSES)-1:0] collect_slot,
-    input  wire [           `CCHIP_READ_CODE_W-1:0] collect_code,
-    input  wire [                          SET_W:0] collect_frame,
+    input  wire                                     allocate,          // a line gets a frame
+    input  wire [               $clog2(MISSES)-1:0] allocate_slot,     // slot of its read
+    input  wire [                          SET_W:0] allocate_frame,    // {set, way}
+    input  wire                                     collect,           // a line has come
+    input  wire [               $clog2(MISSES)-1:0] collect_slot,      // its slot
+    input  wire [           `CCHIP_READ_CODE_W-1:0] collect_code,      // outcome of its read
+    input  wire [                          SET_W:0] collect_frame,     // its frame
+    // requests that wait for this line are still being served
     output wire                                     serving,
+    // a request whose line has come waits for stage 0
     output wire                                     serve_valid,
-    // the one write to the entries, {valid, locked, turn, slot, tag} of each way
-    input  wire [                              1:0] entry_write,
-    input  wire [                        SET_W-1:0] entry_set,
+    // ---- the one write to the entries, {valid, locked, turn, slot, tag} of each way
+    input  wire [                              1:0] entry_write,  // ways whose entry is written
+    input  wire [                        SET_W-1:0] entry_set,         // set of the write
+    // {valid, locked, turn, slot, tag} of each way
     input  wire [2*(3+$clog2(MISSES)+LINE_W-SET_W)-1:0] entry_data,
-    input  wire [                              1:0] change_by,       // by stage 6 of these ports
-    input  wire [                      2*SET_W-1:0] sets6,           // of stage 6 of the ports
-    // of requests that are looked up again one is the oldest, each in turn
+    // bit p: the write is a change that stage 6 of port p has made
+    input  wire [                              1:0] change_by,
+    input  wire [                      2*SET_W-1:0] sets6,  // set in stage 6 of each port
+    // ---- of requests that are looked up again one is the oldest, each in turn
+    // bit of each place: its request is being looked up again
     output wire [                       PLACES-1:0] retried,
-    input  wire                                     oldest_here,     // it is the turn of one here,
-    input  wire [               $clog2(PLACES)-1:0] oldest_place,
-    input  wire                                     alone,           // which alone gets a frame
-    // stage 5: the half and the frame to read or to write
+    // the oldest request is one of this port,
+    input  wire                                     oldest_here,
+    input  wire [               $clog2(PLACES)-1:0] oldest_place,      // of this place
+    input  wire                                     alone,  // only the oldest one gets a frame
+    // ---- stage 5: the half and the frame to read or to write
+    // the half of the line in stage 5: 0 lower, 1 upper
     output wire                                     beat5,
+    // frame that stage 5 reads or writes
     output wire [                          SET_W:0] data_addr,
-    output wire                                     fill_write,
-    // stage 6: a frame is wanted for line6
-    output wire                                     want,
-    output wire                                     want_way,
-    output wire                                     want_locked,
-    output wire                                     want_turn,
-    output wire [                       LINE_W-1:0] line6,
-    input  wire                                     grant,
-    // a fill without data, whose line is to be invalidated
+    output wire                                     fill_write,        // stage 5 writes it
+    // ---- stage 6: a frame is wanted for line6
+    output wire                                     want,  // stage 6 wants a frame for line6
+    output wire                                     want_way,          // in this way
+    output wire                                     want_locked,       // to be locked
+    output wire                                     want_turn,         // turn of the entry
+    output wire [                       LINE_W-1:0] line6,             // line in stage 6
+    input  wire                                     grant,             // it gets the frame
+    // ---- a fill without data, whose line is to be invalidated
+    // the line in stage 6 came without data: its entry is to be cleared
     output wire                                     kill6,
-    output wire [               $clog2(MISSES)-1:0] fill_slot6,
-    output wire [                              1:0] fill_way6,       // one-hot
-    // a set has been looked up: ways to invalidate, and what stays in their entries
-    output wire                                     walk6,
-    output wire                                     walk_stale6,
+    output wire [               $clog2(MISSES)-1:0] fill_slot6,        // its slot
+    output wire [                              1:0] fill_way6,         // its way, one-hot
+    // ---- a set has been looked up: ways to invalidate, and what stays in their entries
+    output wire                                     walk6,  // a set to invalidate is in stage 6
+    output wire                                     walk_stale6,  // it has changed since stage 1
+    // there are lines of the range in it
     output wire                                     walk_hits6,
-    output wire [                              1:0] walk_ways6,
-    output wire [           2*($clog2(MISSES)+1)-1:0] walk_keep6      // {turn, slot}
+    output wire [                              1:0] walk_ways6,        // ways that have one
+    output wire [           2*($clog2(MISSES)+1)-1:0] walk_keep6       // {turn, slot} of each way
 );
 
   localparam integer PLACE_W = $clog2(PLACES);

@@ -9,27 +9,26 @@
 //   throughput   a lookup on each clock with free = 1
 //   cuts         all but free and the new request to the lookup
 //   reset        no request. Room is known: at most PLACES requests are with a port at a time
+//   inside       Two cchip_fifo: new requests that found the port taken, and those to be looked up
+//                again.
 module cchip_cache_requests #(
-    // places: 2, 4, 8, 16, 32 or 64
-    parameter integer PLACES = 32,
-    // width of a line's number, bit
-    parameter integer LINE_W = 32
+    parameter integer PLACES = 32,  // places of a port (line); legal: 2, 4, 8, 16, 32, 64
+    parameter integer LINE_W = 32   // width of a line's number (bit); legal: SET_W + 1 .. 58
 ) (
-    input  wire                      clk,
-    input  wire                      rst,
-    // a new request
-    input  wire                      s_valid,
-    input  wire [$clog2(PLACES)-1:0] s_place,
-    input  wire [        LINE_W-1:0] s_line,
-    // one to be looked up again
-    input  wire                      again,
-    input  wire [$clog2(PLACES)-1:0] again_place,
-    input  wire [        LINE_W-1:0] again_line,
-    // the lookup
+    input  wire                      clk,          // clock, rising edge
+    input  wire                      rst,          // synchronous reset, active high
+    input  wire                      s_valid,      // a new request
+    input  wire [$clog2(PLACES)-1:0] s_place,      // its place
+    input  wire [        LINE_W-1:0] s_line,       // its line
+    // ---- one to be looked up again
+    input  wire                      again,        // a request is to be looked up again
+    input  wire [$clog2(PLACES)-1:0] again_place,  // its place
+    input  wire [        LINE_W-1:0] again_line,   // its line
+    // ---- the lookup
     input  wire                      free,         // a request may have this clock
-    output wire                      look,
-    output wire [$clog2(PLACES)-1:0] look_place,
-    output wire [        LINE_W-1:0] look_line
+    output wire                      look,         // a request is looked up
+    output wire [$clog2(PLACES)-1:0] look_place,   // its place
+    output wire [        LINE_W-1:0] look_line     // its line
 );
 
   localparam integer WIDTH = $clog2(PLACES) + LINE_W;

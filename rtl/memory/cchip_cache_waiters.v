@@ -15,37 +15,39 @@
 //   throughput   one request per clock
 //   cuts         all but serve_ready to serving
 //   reset        no request waits
+//   inside       Of each place two bits, asleep and awake, and the slot it waits for. The lowest
+//                place that is awake is found by groups of four: a carry chain over 64 bits is
+//                slower.
+//   why          The slot is written whenever a decision about the place falls, not only when the
+//                request falls asleep: that is known too late in the clock to enable registers of
+//                all places. It counts only while the place is asleep.
 module cchip_cache_waiters #(
-    // places: 2, 4, 8, 16, 32 or 64
-    parameter integer PLACES = 32,
-    // slots of lines in flight: 2, 4, 8, 16 or 32
-    parameter integer MISSES = 32,
-    // width of a frame's number, bit
-    parameter integer FRAME_W = 12
+    parameter integer PLACES = 32,  // places of a port (line); legal: 2, 4, 8, 16, 32, 64
+    parameter integer MISSES = 32,  // slots of lines in flight; legal: 2, 4, 8, 16, 32
+    parameter integer FRAME_W = 12  // width of a frame's number, {set, way} (bit); legal: >= 1
 ) (
-    input  wire                          clk,
-    input  wire                          rst,
-    // a lookup, a clock before it is decided upon
-    input  wire                          look,
-    input  wire [    $clog2(PLACES)-1:0] look_place,
-    // the decision: one of these, or neither
-    input  wire                          sleep,
-    input  wire [    $clog2(MISSES)-1:0] sleep_slot,
-    input  wire                          retry,
-    output wire [            PLACES-1:0] retried,
-    // a line has come
-    input  wire                          collect,
-    input  wire [    $clog2(MISSES)-1:0] collect_slot,
-    input  wire [`CCHIP_READ_CODE_W-1:0] collect_code,
-    input  wire [           FRAME_W-1:0] collect_frame,
-    // a request whose line has come
-    output wire                          serving,
-    output wire                          serve_valid,
-    input  wire                          serve_ready,
-    output wire [    $clog2(PLACES)-1:0] serve_place,
-    output wire [`CCHIP_READ_CODE_W-1:0] serve_code,
-    output wire [           FRAME_W-1:0] serve_frame,
-    output wire [            PLACES-1:0] waiting         // asleep or awake
+    input  wire                          clk,            // clock, rising edge
+    input  wire                          rst,            // synchronous reset, active high
+    // ---- a lookup, a clock before it is decided upon
+    input  wire                          look,  // a lookup is decided upon on the next clock
+    input  wire [    $clog2(PLACES)-1:0] look_place,     // its place
+    // ---- the decision: one of these, or neither
+    input  wire                          sleep,          // the decision: it waits for a line
+    input  wire [    $clog2(MISSES)-1:0] sleep_slot,     // slot of that line
+    input  wire                          retry,  // the decision: it is to be looked up again
+    output wire [            PLACES-1:0] retried,  // bit of each place: the last decision was retry
+    input  wire                          collect,        // a line has come
+    input  wire [    $clog2(MISSES)-1:0] collect_slot,   // its slot
+    input  wire [`CCHIP_READ_CODE_W-1:0] collect_code,   // outcome of its read
+    input  wire [           FRAME_W-1:0] collect_frame,  // its frame; both stay while serving = 1
+    // ---- a request whose line has come
+    output wire                          serving,        // the frame is still needed
+    output wire                          serve_valid,    // a request whose line has come
+    input  wire                          serve_ready,  // it is accepted if serve_valid = 1 as well
+    output wire [    $clog2(PLACES)-1:0] serve_place,    // its place
+    output wire [`CCHIP_READ_CODE_W-1:0] serve_code,     // outcome of the read
+    output wire [           FRAME_W-1:0] serve_frame,    // frame of the line
+    output wire [            PLACES-1:0] waiting  // bit of each place: it waits, or is to be served
 );
 
   localparam integer PLACE_W = $clog2(PLACES);

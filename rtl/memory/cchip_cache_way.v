@@ -10,47 +10,47 @@
 //   throughput   a lookup per clock
 //   cuts         line4 reaches match4, line5 reaches hold5 within the clock; all else is cut
 //   reset        none: entries are unknown until they have been written
+//   inside       A cchip_block_ram of entries between registers on both sides, and the frame of
+//                each slot in LUT memory. An entry keeps the slot of the read that filled it: that
+//                slot's frame says whether the line is still in flight, so nothing has to be
+//                written when it has come.
 module cchip_cache_way #(
-    // this way: 0 or 1
-    parameter integer WAY = 0,
-    // slots of lines in flight: 2, 4, 8, 16 or 32
-    parameter integer MISSES = 32,
-    // width of a set's number, bit
-    parameter integer SET_W = 10,
-    // width of a line's number, bit, more than SET_W
-    parameter integer LINE_W = 32
+    parameter integer WAY = 0,      // this way; legal: 0, 1
+    parameter integer MISSES = 32,  // slots of lines in flight; legal: 2, 4, 8, 16, 32
+    parameter integer SET_W = 10,   // width of a set's number (bit); legal: >= 3
+    parameter integer LINE_W = 32   // width of a line's number (bit); legal: SET_W + 1 .. 58
 ) (
-    input  wire                                      clk,
-    // the one write to the entries
-    input  wire                                      write,
-    input  wire [                         SET_W-1:0] write_set,
-    input  wire [3+$clog2(MISSES)+LINE_W-SET_W-1:0] write_data,
-    // a line that gets a frame
-    input  wire                                      allocate,
-    input  wire [                $clog2(MISSES)-1:0] allocate_slot,
+    input  wire                                      clk,             // clock, rising edge
+    // ---- the one write to the entries
+    input  wire                                      write,           // an entry is written
+    input  wire [                         SET_W-1:0] write_set,       // of this set
+    input  wire [3+$clog2(MISSES)+LINE_W-SET_W-1:0] write_data,  // {valid, locked, turn, slot, tag}
+    input  wire                                      allocate,        // a line gets a frame
+    input  wire [                $clog2(MISSES)-1:0] allocate_slot,   // slot of its read
     input  wire [                           SET_W:0] allocate_frame,  // {set, way}
-    // of each slot: it has a frame; its data are in the frame
-    input  wire [                        MISSES-1:0] held,
+    // ---- of each slot: it has a frame; its data are in the frame
+    input  wire [                        MISSES-1:0] held,  // bit of each slot: it has a frame
+    // bit of each slot: its data are in the frame
     input  wire [                        MISSES-1:0] filled,
-    // the lookup, at stages 1, 4 and 5
-    input  wire [                         SET_W-1:0] set1,
-    input  wire [                        LINE_W-1:0] line4,
-    input  wire [                         SET_W-1:0] set5,
-    // lines to invalidate
-    input  wire [                        LINE_W-1:0] first,
-    input  wire [                        LINE_W-1:0] last,
+    // ---- the lookup, at stages 1, 4 and 5
+    input  wire [                         SET_W-1:0] set1,  // set of the lookup in stage 1
+    input  wire [                        LINE_W-1:0] line4,  // line of the lookup in stage 4
+    input  wire [                         SET_W-1:0] set5,  // set of the lookup in stage 5
+    // ---- lines to invalidate
+    input  wire [                        LINE_W-1:0] first,           // first line to invalidate
+    input  wire [                        LINE_W-1:0] last,            // last line to invalidate
     output wire                                      match4,          // the line is in this way
-    output wire                                      match5,
-    output wire                                      valid5,
-    output wire                                      locked5,
-    output wire                                      turn5,
-    output wire                                      hold5,           // the frame is held,
-    output wire                                      full5,           // and the data are here
-    output wire [                $clog2(MISSES)-1:0] slot5,
-    output wire                                      forget5,         // the line is in the range
-    output wire                                      forget6,
-    output wire                                      turn6,
-    output wire [                $clog2(MISSES)-1:0] slot6
+    output wire                                      match5,          // the same, in stage 5
+    output wire                                      valid5,          // the entry has a line
+    output wire                                      locked5,         // which is locked
+    output wire                                      turn5,           // turn of the entry
+    output wire                                      hold5,           // a slot holds the frame
+    output wire                                      full5,           // its data are in the frame
+    output wire [                $clog2(MISSES)-1:0] slot5,           // slot of the entry
+    output wire                                      forget5,  // its line is one to invalidate
+    output wire                                      forget6,         // the same, in stage 6
+    output wire                                      turn6,           // turn, in stage 6
+    output wire [                $clog2(MISSES)-1:0] slot6            // slot, in stage 6
 );
 
   localparam integer SLOT_W = $clog2(MISSES);

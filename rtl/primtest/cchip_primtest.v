@@ -13,29 +13,39 @@
 //   cuts         every path: each output, s_pair_ready included, is a flip-flop
 //   reset        no pair accepted before is ever answered; s_pair_ready is 0 while rst is 1
 module cchip_primtest #(
-    // width of a coordinate, bit, 4..20
-    parameter integer COORD_W = 16,
-    // registers in each of the stages axis and project, clocks, >= CCHIP_SUBSTAGES_MIN(COORD_W)
+    parameter integer COORD_W = 16,  // width of a signed coordinate (bit); legal: 4..20
+    // registers in each of the stages axis and project (clock); legal:
+    // CCHIP_SUBSTAGES_MIN(COORD_W)..32
     parameter integer SUBSTAGES = 10,
-    // pairs in flight, 1..256
+    // pairs in flight; legal: 1..256
     parameter integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES),
-    // 0 relative, 1 absolute projection (see cchip_sat_project)
+    // 1: one projector more, same results: cchip_sat_project; legal: 0, 1
     parameter integer ABSOLUTE_PROJECTION = 0,
-    // 1: warped quads are decided exactly; 0: they are left open (see cchip_axis_controller)
+    // 1: warped quads are decided exactly; 0: no programme TETRAHEDRON: what the directed beats do
+    // not decide of a warped quad ends with hit 1, definite 0; legal: 0, 1
     parameter integer WARPED_EXACT = 1,
-    // vertices of A and of B: 3 3, 3 4 or 4 4
+    // vertices of A (vertex); legal: 3, 4; VERTS_A VERTS_B is 3 3, 3 4 or 4 4
     parameter integer VERTS_A = 3,
-    parameter integer VERTS_B = 3
+    parameter integer VERTS_B = 3  // vertices of B (vertex); legal: VERTS_A..4
 ) (
-    input  wire                                   clk,
-    input  wire                                   rst,
-    input  wire                                   s_pair_valid,
+    // ---- clock and reset
+    input  wire                                   clk,             // clock, rising edge
+    input  wire                                   rst,             // synchronous reset, active high
+    // ---- requests
+    input  wire                                   s_pair_valid,    // a pair is offered
+    // the pair is accepted if s_pair_valid = 1 as well
     output wire                                   s_pair_ready,
+    // the pair: record REQUEST of the fields below
     input  wire [  `CCHIP_REQUEST_W(COORD_W)-1:0] s_pair_data,
-    output wire                                   m_result_valid,
+    // ---- results
+    output wire                                   m_result_valid,  // a result is offered
+    // the result is taken if m_result_valid = 1 as well
     input  wire                                   m_result_ready,
+    // the result: record RESULT of the fields below
     output wire [            `CCHIP_RESULT_W-1:0] m_result_data,
-    output wire [             `CCHIP_RM_ID_W-1:0] rm_id,
+    // ---- status
+    output wire [             `CCHIP_RM_ID_W-1:0] rm_id,  // constant: CCHIP_RM_OF(VERTS_A, VERTS_B)
+    // no accepted pair is without an accepted result
     output wire                                   idle
 );
 

@@ -18,40 +18,55 @@
 //                CCHIP_ARRAY_LATENCY(LANES) + 1 clocks longer
 // Ports and their meaning: cchip_primtest_tri_tri, _tri_quad, _quad_quad.
 module cchip_primtest_array #(
-    // width of a coordinate, bit, 4..20
-    parameter integer COORD_W = 16,
-    // registers in each of the stages axis and project, clocks, >= CCHIP_SUBSTAGES_MIN(COORD_W)
+    parameter integer COORD_W = 16,  // width of a signed coordinate (bit); legal: 4..20
+    // registers in each of the stages axis and project (clock); legal:
+    // CCHIP_SUBSTAGES_MIN(COORD_W)..32
     parameter integer SUBSTAGES = 10,
-    // pairs in flight in each lane, 1..256
+    // pairs in flight in each lane; legal: 1..256
     parameter integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES),
-    // 0 relative, 1 absolute projection (see cchip_sat_project)
+    // 1: one projector more, same results: cchip_sat_project; legal: 0, 1
     parameter integer ABSOLUTE_PROJECTION = 0,
-    // 1: warped quads are decided exactly; 0: they are left open (see cchip_axis_controller)
+    // 1: warped quads are decided exactly; 0: no programme TETRAHEDRON: what the directed beats do
+    // not decide of a warped quad ends with hit 1, definite 0; legal: 0, 1
     parameter integer WARPED_EXACT = 1,
-    // primitive tests, 1..16
+    // primitive tests; six of cchip_primtest_tri_tri take 144 of the 156 multiplier blocks of an
+    // LFE5U-85F (lane); legal: 1..16
     parameter integer LANES = 6,
-    // vertices of A and of B: 3 3, 3 4 or 4 4
+    // vertices of A (vertex); legal: 3, 4; VERTS_A VERTS_B is 3 3, 3 4 or 4 4
     parameter integer VERTS_A = 3,
-    parameter integer VERTS_B = 3
+    parameter integer VERTS_B = 3  // vertices of B (vertex); legal: VERTS_A..4
 ) (
-    input  wire                                   clk,
-    input  wire                                   rst,
-    input  wire                                   s_pair_valid,
+    input  wire                                   clk,                // clock, rising edge
+    input  wire                                   rst,  // synchronous reset, active high
+    input  wire                                   s_pair_valid,       // a pair is offered
+    // the pair is accepted if s_pair_valid = 1 as well
     output wire                                   s_pair_ready,
-    input  wire [               `CCHIP_TAG_W-1:0] s_pair_tag,
+    input  wire [               `CCHIP_TAG_W-1:0] s_pair_tag,  // anything; returned with the result
+    // 0 EXHAUSTIVE, 1 DIRECTED; 2 and 3 are reserved
     input  wire [              `CCHIP_MODE_W-1:0] s_pair_mode,
+    // A: vertex i in bits [3*COORD_W*i +: 3*COORD_W], x lowest; slot 3 of a triangle is ignored
     input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,
-    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,
+    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,           // B likewise
+    // eta: upper bound, in whole grid steps and infinity norm, on the error of the difference of
+    // any two vertices of the pair; 0 exact, 15 unknown
     input  wire [               `CCHIP_ERR_W-1:0] s_pair_err,
-    output wire                                   m_result_valid,
+    output wire                                   m_result_valid,     // a result is offered
+    // the result is taken if m_result_valid = 1 as well
     input  wire                                   m_result_ready,
-    output wire [               `CCHIP_TAG_W-1:0] m_result_tag,
+    output wire [               `CCHIP_TAG_W-1:0] m_result_tag,       // tag of the pair
+    // grid or not definite: never a false "no"
     output wire                                   m_result_hit,
+    // the exact answer for the grid coordinates
     output wire                                   m_result_grid,
+    // grid is proven for the unrounded primitives
     output wire                                   m_result_definite,
+    // witness {class[2:0], k[2:0], l[2:0]}
     output wire [         `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
+    // axes issued for the pair; 0 for a reserved mode
     output wire [             `CCHIP_BEATS_W-1:0] m_result_beats,
+    // constant: that of one lane, CCHIP_RM_TRI_TRI, _TRI_QUAD or _QUAD_QUAD
     output wire [             `CCHIP_RM_ID_W-1:0] rm_id,
+    // no accepted pair is without an accepted result
     output wire                                   idle
 );
 

@@ -20,29 +20,45 @@
 // m_result_axis = {class, 0, l}: first of NORMAL_B (face), CROSS (edge l), NORMAL_A (vertex l) that
 // separates, class NONE if there is none.
 module cchip_primtest_point_tri #(
-    // width of a coordinate, bit, 4..20
+    // width of a signed coordinate, and of the unsigned radius (bit); legal: 4..20
     parameter integer COORD_W = 16,
-    // pairs in flight, 1..256
-    parameter integer CONTEXTS = 8
+    parameter integer CONTEXTS = 8   // pairs in flight; legal: 1..256
 ) (
-    input  wire                                   clk,
-    input  wire                                   rst,
-    input  wire                                   s_pair_valid,
+    // ---- clock and reset
+    input  wire                                   clk,                // clock, rising edge
+    input  wire                                   rst,  // synchronous reset, active high
+    // ---- requests
+    input  wire                                   s_pair_valid,       // a pair is offered
+    // the pair is accepted if s_pair_valid = 1 as well
     output wire                                   s_pair_ready,
-    input  wire [               `CCHIP_TAG_W-1:0] s_pair_tag,
+    input  wire [               `CCHIP_TAG_W-1:0] s_pair_tag,  // anything; returned with the result
+    // 0 EXHAUSTIVE, 1 DIRECTED, which do the same; 2 and 3 are reserved
     input  wire [              `CCHIP_MODE_W-1:0] s_pair_mode,
+    // point A: centre in bits [0 +: 3*COORD_W], x lowest; radius in [3*COORD_W +: COORD_W],
+    // unsigned, in grid steps; the rest is ignored
     input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,
+    // triangle B: vertex i in bits [3*COORD_W*i +: 3*COORD_W], x lowest; i = 0..2, slot 3 is
+    // ignored
     input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,
+    // eta: 0 exact; any other value: the answer is never definite
     input  wire [               `CCHIP_ERR_W-1:0] s_pair_err,
-    output wire                                   m_result_valid,
+    // ---- results
+    output wire                                   m_result_valid,     // a result is offered
+    // the result is taken if m_result_valid = 1 as well
     input  wire                                   m_result_ready,
-    output wire [               `CCHIP_TAG_W-1:0] m_result_tag,
+    output wire [               `CCHIP_TAG_W-1:0] m_result_tag,       // tag of the pair
+    // grid or not definite: never a false "no"
     output wire                                   m_result_hit,
+    // the exact answer for the grid: distance <= radius
     output wire                                   m_result_grid,
+    // eta is 0 and the mode is legal
     output wire                                   m_result_definite,
+    // witness {class[2:0], k[2:0], l[2:0]}
     output wire [         `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
-    output wire [             `CCHIP_BEATS_W-1:0] m_result_beats,
-    output wire [             `CCHIP_RM_ID_W-1:0] rm_id,
+    output wire [             `CCHIP_BEATS_W-1:0] m_result_beats,     // 7; 0 for a reserved mode
+    // ---- status
+    output wire [             `CCHIP_RM_ID_W-1:0] rm_id,  // constant: 4 (CCHIP_RM_POINT_TRI)
+    // no accepted pair is without an accepted result
     output wire                                   idle
 );
 

@@ -22,37 +22,36 @@
 //                after the change, a higher one, or 0, gives more time
 //   reset        must reset the bus too: after it no beat of an earlier read may come
 module cchip_bitstream_fetch #(
-    // capacity of the FIFO, words, >= 32
-    parameter integer FIFO_DEPTH = 32,
-    // AxCACHE of reads, 0..15, and AxPROT, 0..7
+    parameter integer FIFO_DEPTH = 32,  // capacity of the FIFO (word); legal: >= 32
+    // ARCACHE: 3 normal memory, 15 a coherent port; legal: 0..15
     parameter integer AXI_ARCACHE = 3,
-    parameter integer AXI_PROT = 0
+    parameter integer AXI_PROT = 0      // AxPROT: 0 secure, 2 non-secure; legal: 0..7
 ) (
-    input  wire        clk,
-    input  wire        rst,
-    input  wire        run,
-    input  wire [31:0] address,        // byte, multiple of 4
-    input  wire [29:0] words,
-    input  wire [31:0] limit,          // clocks; 0: default
-    output wire        m_valid,
-    input  wire        m_ready,
-    output wire [31:0] m_data,
-    output wire        bus_error,
-    output wire        timeout,
-    output wire        outstanding,
-    output wire        m_axi_arvalid,
-    input  wire        m_axi_arready,
-    output wire [31:0] m_axi_araddr,
-    output wire [ 7:0] m_axi_arlen,
-    output wire [ 2:0] m_axi_arsize,
-    output wire [ 1:0] m_axi_arburst,
-    output wire [ 3:0] m_axi_arcache,
-    output wire [ 2:0] m_axi_arprot,
-    input  wire        m_axi_rvalid,
-    output wire        m_axi_rready,
-    input  wire [31:0] m_axi_rdata,
-    input  wire [ 1:0] m_axi_rresp,
-    input  wire        m_axi_rlast
+    input  wire        clk,            // clock, rising edge
+    input  wire        rst,            // synchronous reset, active high
+    input  wire        run,            // 1: work
+    input  wire [31:0] address,  // first word, byte, multiple of 4; read on the first clock of run
+    input  wire [29:0] words,          // words to fetch; read on the first clock of run
+    input  wire [31:0] limit,  // longest wait: 1..2^32 - 1 clocks; 0: CCHIP_MEMORY_LIMIT_DEFAULT
+    output wire        m_valid,        // m_data is the next word
+    input  wire        m_ready,        // the word is taken if m_valid = 1 as well
+    output wire [31:0] m_data,         // word
+    output wire        bus_error,      // error on the bus, until run = 0
+    output wire        timeout,  // limit clocks without an address taken or a beat, until run = 0
+    output wire        outstanding,    // an address is not taken yet or beats are to come
+    output wire        m_axi_arvalid,  // AXI4 read address
+    input  wire        m_axi_arready,  // address taken
+    output wire [31:0] m_axi_araddr,   // address, byte
+    output wire [ 7:0] m_axi_arlen,    // beats - 1, up to 15
+    output wire [ 2:0] m_axi_arsize,   // constant: 4 bytes
+    output wire [ 1:0] m_axi_arburst,  // constant: INCR
+    output wire [ 3:0] m_axi_arcache,  // constant: normal, not cached
+    output wire [ 2:0] m_axi_arprot,   // constant 0
+    input  wire        m_axi_rvalid,   // beat
+    output wire        m_axi_rready,   // 1 except in reset
+    input  wire [31:0] m_axi_rdata,    // data
+    input  wire [ 1:0] m_axi_rresp,    // response; anything but OKAY is an error
+    input  wire        m_axi_rlast     // last beat of a burst
 );
 
   localparam [31:0] CACHE = AXI_ARCACHE;

@@ -9,21 +9,21 @@
 //   reset        clear must be 1 for 2 clocks at least between two headers; slot, module_id and
 //                size must not change from then to done
 module cchip_bitstream_header #(
-    // width of the configuration port, bit: 8 or 32
-    parameter integer CFG_W = 8
+    parameter integer CFG_W = 8  // width of the configuration port (bit); legal: 8, 32
 ) (
-    input  wire                        clk,
-    input  wire                        clear,
-    input  wire                        s_valid,
-    input  wire [                31:0] s_data,
-    input  wire [`CCHIP_SLOT_ID_W-1:0] slot,            // asked for
-    input  wire [  `CCHIP_RM_ID_W-1:0] module_id,
+    input  wire                        clk,             // clock, rising edge
+    input  wire                        clear,  // 1 between two headers, for 2 clocks or more
+    input  wire                        s_valid,         // s_data is the next word
+    input  wire [                31:0] s_data,          // word
+    input  wire [`CCHIP_SLOT_ID_W-1:0] slot,            // slot
+    input  wire [  `CCHIP_RM_ID_W-1:0] module_id,       // module
     input  wire [                31:0] size,            // header and payload, byte
-    output wire                        done,
-    output wire                        ok,              // with done
-    output wire [   `CCHIP_SWAP_W-1:0] code,            // what is wrong, if not ok
-    output wire [                31:0] payload_length,  // byte
-    output wire [                31:0] payload_crc
+    output wire                        done,            // four words are here and judged
+    output wire                        ok,              // the header is right; with done
+    // what is wrong if ok = 0: MAGIC, SLOT, MODULE or LENGTH, the first of them
+    output wire [   `CCHIP_SWAP_W-1:0] code,
+    output wire [                31:0] payload_length,  // length of the payload, byte
+    output wire [                31:0] payload_crc      // CRC-32 of the payload
 );
 
   reg [31:0] magic_q, names_q, length_q, crc_q, expected_q;

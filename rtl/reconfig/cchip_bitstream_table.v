@@ -13,26 +13,36 @@
 //                write counts
 //   cuts         every path but read_word to read_data
 //   reset        valid: 0; addresses and sizes are undefined until written
+//   about        Software writes it, the scheduler looks up the entry of a swap.
+//   timing       A look-up takes 2 clocks: the address is read on the first, the size on the
+//                second. rst clears the valid bits.
+//   numbers      An entry counts only while its valid bit is 1, so software writes that last.
+//                Entries of slots and modules that are not there read as 0; writes to them are
+//                ignored.
+//   why          Distributed RAM with two read ports (8 words per slot, 16 with points) takes the
+//                place of 256 flip-flops per slot and of two multiplexers of all words, one for the
+//                bus and one for the scheduler.
 module cchip_bitstream_table #(
-    // slots, 1..4
-    parameter integer SLOTS = 2,
-    // kinds of pairs, 3, or 4 with points: the modules are 0..KINDS
+    parameter integer SLOTS = 2,  // slots; legal: 1..4
+    // kinds of pairs, 4 with points against triangles; the modules are 0..KINDS; legal: 3, 4
     parameter integer KINDS = 3
 ) (
-    input  wire               clk,
-    input  wire               rst,
-    input  wire               write,
+    input  wire               clk,                                 // clock, rising edge
+    input  wire               rst,                                 // synchronous reset, active high
+    input  wire               write,                               // a word is written
+    // {slot, module (3 bits), word}: word 0 is the address, 1 the size, 2 the valid bit
     input  wire [        6:0] write_word,
-    input  wire [       31:0] write_data,
-    input  wire [        3:0] write_bytes,  // which bytes are written
-    input  wire [        6:0] read_word,
-    output wire [       31:0] read_data,    // on the same clock
-    input  wire               look,
-    input  wire [        4:0] look_entry,   // {slot, module (3 bits)}; stays for 2 clocks
-    output wire [       31:0] address,
-    output wire [       31:0] size,
+    input  wire [       31:0] write_data,                          // its new value
+    input  wire [        3:0] write_bytes,                         // the bytes that are written
+    input  wire [        6:0] read_word,                           // the word that is read
+    output wire [       31:0] read_data,                           // its value, on the same clock
+    input  wire               look,                                // an entry is looked up
+    input  wire [        4:0] look_entry,  // {slot, module (3 bits)}; stays for 2 clocks
+    output wire [       31:0] address,  // its address, 2 clocks later, until the next look-up
+    output wire [       31:0] size,                                // its size likewise
+    // the valid bits, entry m + slot << CCHIP_KIND_BITS(KINDS) for module m
     output wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] valid,
-    input  wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] invalidate
+    input  wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] invalidate  // clears valid bits
 );
 
   localparam integer MODULE_W = `CCHIP_KIND_BITS(KINDS);

@@ -25,64 +25,85 @@
 //                `half_q` outlives rst and keeps it stopped, decoupled and in reset until a good
 //                transfer
 module cchip_config_controller #(
-    // slots, 1..4
-    parameter integer SLOTS = 1,
-    // width of the configuration port, bit: 8 or 32
-    parameter integer CFG_W = 8,
-    // clocks per word of the port, >= 1; at 100 MHz: 2 for 8 bit at 50 MHz, 1 for 32 bit at 100 MHz
+    parameter integer SLOTS = 1,          // slots; legal: 1..4
+    parameter integer CFG_W = 8,          // width of the configuration port (bit); legal: 8, 32
+    // clocks per word of the port; at 100 MHz 2 for 8 bit at 50 MHz, 1 for 32 bit at 100 MHz;
+    // legal: >= 1
     parameter integer CFG_DIVIDER = 2,
-    // longest wait for a slot to decouple, to end its ROC, to recouple, clocks, >= 16
+    // longest wait for a slot to decouple, to end its reset on configuration, to recouple (clock);
+    // legal: >= 16
     parameter integer SLOT_LIMIT = 4096,
-    // AxCACHE of reads, 0..15, and AxPROT, 0..7
+    // ARCACHE: 3 normal memory, 15 a coherent port; legal: 0..15
     parameter integer AXI_ARCACHE = 3,
-    parameter integer AXI_PROT = 0
+    parameter integer AXI_PROT = 0        // AxPROT: 0 secure, 2 non-secure; legal: 0..7
 ) (
-    input  wire                                 clk,
-    input  wire                                 rst,
-    input  wire                                 s_swap_valid,
+    input  wire                                 clk,             // clock, rising edge
+    input  wire                                 rst,             // synchronous reset, active high
+    input  wire                                 s_swap_valid,    // a swap is requested
+    // the request is taken if s_swap_valid = 1 as well; 1 also during a swap
     output wire                                 s_swap_ready,
+    // the request: record SWAP_REQUEST, docs/hardware/definitions.md
     input  wire [    `CCHIP_SWAP_REQUEST_W-1:0] s_swap_data,
-    output wire                                 m_report_valid,   // 1 clock, no ready
+    // 1 for one clock: a report; there is no ready
+    output wire                                 m_report_valid,
+    // the report: record SWAP_REPORT, docs/hardware/definitions.md
     output wire [     `CCHIP_SWAP_REPORT_W-1:0] m_report_data,
+    // 1: abort the swap in progress; ignored without one and from RECOUPLE on
     input  wire                                 abort_swap,
-    input  wire                                 clear,            // the clocks of phases
-    input  wire [                         31:0] shutdown_limit,   // clocks; 0: default
-    input  wire [                         31:0] memory_limit,     // clocks; 0: default
-    output wire [                    SLOTS-1:0] stop,
+    input  wire                                 clear,  // 1: read_clocks is 0 for every phase
+    // longest wait for the pairs inside: 1..2^32 - 1 clocks; 0: CCHIP_SHUTDOWN_LIMIT_DEFAULT
+    input  wire [                         31:0] shutdown_limit,
+    // longest wait for an address to be taken or a beat: 1..2^32 - 1 clocks; 0:
+    // CCHIP_MEMORY_LIMIT_DEFAULT
+    input  wire [                         31:0] memory_limit,
+    output wire [                    SLOTS-1:0] stop,            // per slot: accept no more pairs
+    // per slot: outputs of the region become constants
     output wire [                    SLOTS-1:0] decouple,
-    output wire [                    SLOTS-1:0] hold_reset,
+    output wire [                    SLOTS-1:0] hold_reset,      // per slot: the region is in reset
+    // per slot: 1 for one clock starts the reset on configuration
     output wire [                    SLOTS-1:0] roc_start,
+    // per slot: stop is in force and every accepted pair was answered
     input  wire [                    SLOTS-1:0] quiet,
-    input  wire [                    SLOTS-1:0] decoupled,
+    input  wire [                    SLOTS-1:0] decoupled,       // per slot: it is decoupled
+    // per slot: reset on configuration in progress, from the clock after roc_start on
     input  wire [                    SLOTS-1:0] roc_busy,
+    // per slot: module in the region, behind no gate
     input  wire [     `CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id,
+    // per slot: pairs lost by decoupling it; read when decoupled rises
     input  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] lost,
-    output wire                                 busy,
-    output wire [           `CCHIP_PHASE_W-1:0] phase,
-    output wire [         `CCHIP_SLOT_ID_W-1:0] phase_slot,
-    output wire                                 m_axi_arvalid,
-    input  wire                                 m_axi_arready,
-    output wire [                         31:0] m_axi_araddr,
-    output wire [                          7:0] m_axi_arlen,
-    output wire [                          2:0] m_axi_arsize,
-    output wire [                          1:0] m_axi_arburst,
-    output wire [                          3:0] m_axi_arcache,
-    output wire [                          2:0] m_axi_arprot,
-    input  wire                                 m_axi_rvalid,
-    output wire                                 m_axi_rready,
-    input  wire [                         31:0] m_axi_rdata,
+    output wire                                 busy,            // a swap is in progress
+    output wire [           `CCHIP_PHASE_W-1:0] phase,           // its phase, SwapPhase
+    output wire [         `CCHIP_SLOT_ID_W-1:0] phase_slot,      // its slot
+    output wire                                 m_axi_arvalid,   // AXI4 read address
+    input  wire                                 m_axi_arready,   // address taken
+    output wire [                         31:0] m_axi_araddr,    // address, byte
+    output wire [                          7:0] m_axi_arlen,     // beats - 1, up to 15
+    output wire [                          2:0] m_axi_arsize,    // constant: 4 bytes
+    output wire [                          1:0] m_axi_arburst,   // constant: INCR
+    output wire [                          3:0] m_axi_arcache,   // constant: normal, not cached
+    output wire [                          2:0] m_axi_arprot,    // constant 0
+    input  wire                                 m_axi_rvalid,    // beat
+    output wire                                 m_axi_rready,    // 1 except in reset
+    input  wire [                         31:0] m_axi_rdata,     // data
+    // response; anything but OKAY is an error
     input  wire [                          1:0] m_axi_rresp,
-    input  wire                                 m_axi_rlast,
+    input  wire                                 m_axi_rlast,     // last beat of a burst
+    // a word passes the configuration port, one clock
     output wire                                 cfg_valid,
-    output wire [                    CFG_W-1:0] cfg_data,
+    output wire [                    CFG_W-1:0] cfg_data,        // the word, first byte lowest
+    // the device reports an error, from any clock: a level, or a pulse of at least two clocks of
+    // clk, as it passes two flip-flops and a shorter one may be lost; looked at during TRANSFER and
+    // CHECK
     input  wire                                 cfg_error,
-    // to be counted, one clock each: a swap ended well, one failed or was refused, a slot of the
-    // port passed without data
-    output wire                                 swapped,
+    // ---- to be counted, one clock each: a swap ended well, one failed or was refused, a slot of
+    //      the port passed without data
+    output wire                                 swapped,         // a swap ended well, one clock
+    // a swap failed or was refused, SAME not counted, one clock
     output wire                                 rejected,
-    output wire                                 stall,
-    // clocks of a phase of the last swap; read_phase stays for 2 clocks
-    input  wire [           `CCHIP_PHASE_W-1:0] read_phase,
+    output wire                                 stall,  // a slot of the port passed without data
+    // ---- clocks of a phase of the last swap; read_phase stays for 2 clocks
+    input  wire [           `CCHIP_PHASE_W-1:0] read_phase,      // a phase, SwapPhase
+    // its clocks in the last swap, from 1 clock after read_phase on
     output wire [                         31:0] read_clocks
 );
 

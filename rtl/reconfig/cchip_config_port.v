@@ -14,24 +14,31 @@
 //                two; length is read then
 //   numbers      of the last 32-bit word only the bytes within length are used; length is a
 //                multiple of 4 for CFG_W = 32
+//   timing       From there on a word passes at the end of every slot that has data.
+//   numbers      8 bit: byte 0 of each word first, the last word as far as length goes. 32 bit:
+//                whole words.
+//   inside       A clock divider that starts with the first word, a counter of port words, the byte
+//                number, cchip_crc32 behind the output registers: it sees what the device sees.
+//   why          The divider is an enable of the one clock, not a clock. A slot without data is
+//                lost whole, as on a port whose clock runs on, and counted as a stall.
 module cchip_config_port #(
-    // width of the configuration port, bit: 8 or 32
-    parameter integer CFG_W = 8,
-    // clocks per word of the port, >= 1
+    parameter integer CFG_W = 8,       // width of the configuration port (bit); legal: 8, 32
+    // clocks per word of the port; at 100 MHz 2 for 8 bit at 50 MHz, 1 for 32 bit at 100 MHz;
+    // legal: >= 1
     parameter integer CFG_DIVIDER = 2
 ) (
-    input  wire             clk,
-    input  wire             rst,
-    input  wire             run,
-    input  wire [     31:0] length,     // of the payload, byte, > 0
-    input  wire             s_valid,
-    output wire             s_ready,
-    input  wire [     31:0] s_data,
-    output wire             cfg_valid,
-    output wire [CFG_W-1:0] cfg_data,
+    input  wire             clk,        // clock, rising edge
+    input  wire             rst,        // synchronous reset, active high
+    input  wire             run,        // 1: work
+    input  wire [     31:0] length,     // of the payload, byte, > 0; read while run = 0
+    input  wire             s_valid,    // s_data is the next word
+    output wire             s_ready,    // the word is taken if s_valid = 1 as well
+    input  wire [     31:0] s_data,     // word
+    output wire             cfg_valid,  // a word passes the configuration port, one clock
+    output wire [CFG_W-1:0] cfg_data,   // the word, first byte lowest
     output wire             done,       // every word has passed
-    output wire [     31:0] crc,        // of the words that have passed, two clocks after them
-    output wire             stall       // a slot passes without data
+    output wire [     31:0] crc,        // CRC-32 of the words that passed, two clocks after them
+    output wire             stall       // a slot of the port passes without data
 );
 
   localparam integer SLOT_W = CFG_DIVIDER > 1 ? $clog2(CFG_DIVIDER) : 1;

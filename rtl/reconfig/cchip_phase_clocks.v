@@ -9,14 +9,18 @@
 //   cuts         every path but read_phase to read_clocks
 //   reset        rst or clear: every phase reads 0. The RAM is not reset, a bit for each phase says
 //                whether its word belongs to the last swap.
+//   timing       A word shows elapsed one clock later. read_phase must not change while its word is
+//                read. rst or clear: every phase reads 0.
+//   why          The sequencer counts the clocks of a phase anyway; sixteen words of RAM only
+//                remember. A RAM cannot be set to 0 at once, the bits can.
 module cchip_phase_clocks (
-    input  wire                      clk,
-    input  wire                      rst,
-    input  wire                      clear,
-    input  wire [`CCHIP_PHASE_W-1:0] phase,
-    input  wire [              31:0] elapsed,     // clocks in this phase, 1 on the first
-    input  wire [`CCHIP_PHASE_W-1:0] read_phase,
-    output wire [              31:0] read_clocks
+    input  wire                      clk,         // clock, rising edge
+    input  wire                      rst,         // synchronous reset, active high
+    input  wire                      clear,       // 1: every phase reads 0
+    input  wire [`CCHIP_PHASE_W-1:0] phase,       // phase of the controller, SwapPhase
+    input  wire [              31:0] elapsed,     // clocks in this phase, 1 on its first
+    input  wire [`CCHIP_PHASE_W-1:0] read_phase,  // the phase that is read
+    output wire [              31:0] read_clocks  // its clocks, from 1 clock after read_phase on
 );
 
   localparam integer PHASES = 1 << `CCHIP_PHASE_W;

@@ -13,27 +13,31 @@
 //                decouple
 //   reset        nothing valid; has no effect on decoupled
 module cchip_pr_decoupler #(
-    // width of a coordinate, bit
-    parameter integer COORD_W = 16
+    parameter integer COORD_W = 16  // width of a signed coordinate (bit); legal: 4..20
 ) (
-    input  wire                                clk,
-    input  wire                                rst,
-    input  wire                                decouple,
+    input  wire                                clk,             // clock, rising edge
+    input  wire                                rst,             // synchronous reset, active high
+    input  wire                                decouple,        // cut off; independent of rst
+    // decouple one clock later: every output has its constant on the same clock
     output wire                                decoupled,
-    // static side
-    input  wire                                s_vertex_valid,
+    // ---- static side
+    input  wire                                s_vertex_valid,  // a vertex of each primitive
+    // record VERTEX, docs/hardware/definitions.md
     input  wire [`CCHIP_VERTEX_W(COORD_W)-1:0] s_vertex_data,
-    output wire                                m_result_valid,
+    output wire                                m_result_valid,  // a result
+    // record SLOT_RESULT, docs/hardware/definitions.md
     output wire [    `CCHIP_SLOT_RESULT_W-1:0] m_result_data,
+    // number of the module, one clock late; CCHIP_RM_BLANK while decoupled or in reset
     output wire [          `CCHIP_RM_ID_W-1:0] rm_id,
+    // the region's idle, and nothing is inside the decoupler; 1 while decoupled or in reset
     output wire                                idle,
-    // region side
-    output wire                                r_vertex_valid,
-    output wire [`CCHIP_VERTEX_W(COORD_W)-1:0] r_vertex_data,
-    input  wire                                r_result_valid,
-    input  wire [    `CCHIP_SLOT_RESULT_W-1:0] r_result_data,
-    input  wire [          `CCHIP_RM_ID_W-1:0] r_rm_id,
-    input  wire                                r_idle
+    // ---- region side
+    output wire                                r_vertex_valid,  // the vertex, to the region
+    output wire [`CCHIP_VERTEX_W(COORD_W)-1:0] r_vertex_data,   // record VERTEX
+    input  wire                                r_result_valid,  // a result of the region
+    input  wire [    `CCHIP_SLOT_RESULT_W-1:0] r_result_data,   // record SLOT_RESULT
+    input  wire [          `CCHIP_RM_ID_W-1:0] r_rm_id,  // number of the module in the region
+    input  wire                                r_idle           // the region's own idle
 );
 
   wire close = rst | decouple;

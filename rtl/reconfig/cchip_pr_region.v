@@ -19,27 +19,29 @@
 (* black_box *)
 `endif
 module cchip_pr_region #(
-    // persona, CCHIP_RM_BLANK .. CCHIP_RM_POINT_TRI, 0..4
-    parameter integer RM_ID = 1,
-    // width of a coordinate, bit, 4..20
-    parameter integer COORD_W = 16,
-    // registers in each of the stages axis and project, clocks, >= CCHIP_SUBSTAGES_MIN(COORD_W)
+    parameter integer RM_ID = 1,  // the persona; legal: 0..4, CCHIP_RM_BLANK..CCHIP_RM_POINT_TRI
+    parameter integer COORD_W = 16,  // width of a signed coordinate (bit); legal: 4..20
+    // registers in each of the stages axis and project (clock); legal:
+    // CCHIP_SUBSTAGES_MIN(COORD_W)..32
     parameter integer SUBSTAGES = 10,
-    // pairs in flight, 1..256
+    // pairs in flight; legal: 1..256
     parameter integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES),
-    // 0 relative, 1 absolute projection (see cchip_sat_project)
+    // 1: one projector more, same results: cchip_sat_project; legal: 0, 1
     parameter integer ABSOLUTE_PROJECTION = 0,
-    // 1: warped quads are decided exactly; 0: they are left open (see cchip_axis_controller)
+    // 1: warped quads are decided exactly; 0: what the directed beats do not decide of a warped
+    // quad ends with hit 1, definite 0; legal: 0, 1
     parameter integer WARPED_EXACT = 1
 ) (
-    input  wire                                clk,
-    input  wire                                rst,
-    input  wire                                s_vertex_valid,
+    input  wire                                clk,             // clock, rising edge
+    input  wire                                rst,             // synchronous reset, active high
+    input  wire                                s_vertex_valid,  // a vertex of each primitive
+    // record VERTEX, docs/hardware/definitions.md
     input  wire [`CCHIP_VERTEX_W(COORD_W)-1:0] s_vertex_data,
-    output wire                                m_result_valid,
+    output wire                                m_result_valid,  // a result
+    // record SLOT_RESULT, docs/hardware/definitions.md
     output wire [    `CCHIP_SLOT_RESULT_W-1:0] m_result_data,
-    output wire [          `CCHIP_RM_ID_W-1:0] rm_id,
-    output wire                                idle
+    output wire [          `CCHIP_RM_ID_W-1:0] rm_id,           // constant: RM_ID
+    output wire                                idle  // no pair is begun or without a result
 );
 
 `ifndef CCHIP_PR_BLACK_BOX

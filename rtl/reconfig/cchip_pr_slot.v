@@ -16,45 +16,55 @@
 // SIMULATION = 0: one cchip_pr_region, the partition of FPGA tools. SIMULATION = 1: all modules
 // 0..KINDS, exchanged by the words that pass the configuration port (cchip_pr_virtual).
 module cchip_pr_slot #(
-    // see cchip_pr_region
-    parameter integer COORD_W = 16,
+    parameter integer COORD_W = 16,  // width of a signed coordinate (bit); legal: 4..20
+    // registers in each of the stages axis and project (clock); legal:
+    // CCHIP_SUBSTAGES_MIN(COORD_W)..32
     parameter integer SUBSTAGES = 10,
+    // pairs in flight; legal: 1..256
     parameter integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES),
-    parameter integer ABSOLUTE_PROJECTION = 0,
-    parameter integer WARPED_EXACT = 1,
-    // kinds of pairs, 3, or 4 with points
+    parameter integer ABSOLUTE_PROJECTION = 0,  // see cchip_pr_region; legal: 0, 1
+    parameter integer WARPED_EXACT = 1,  // see cchip_pr_region; legal: 0, 1
+    // kinds of pairs, 4 with points against triangles; the modules are 0..KINDS; legal: 3, 4
     parameter integer KINDS = 3,
-    // number of this slot, 0..255
+    // number of this slot, compared with the one in a payload; legal: 0..255
     parameter integer SLOT_ID = 0,
-    // module at power-up, CCHIP_RM_BLANK .. , 0..KINDS
-    parameter integer RM_ID = 1,
-    // reset on configuration, clocks, 1..32
+    parameter integer RM_ID = 1,  // module at power-up, CCHIP_RM_BLANK on; legal: 0..KINDS
+    // length of the reset on configuration (clock); legal: 1..32
     parameter integer ROC_CYCLES = `CCHIP_ROC_CLOCKS_DEFAULT,
-    // width of the configuration port, bit, 8 or 32
-    parameter integer CFG_W = 8,
-    // 0 partition, 1 simulated reconfiguration
+    parameter integer CFG_W = 8,  // width of the configuration port (bit); legal: 8, 32
+    // 0 the partition of FPGA tools, 1 all modules 0..KINDS, exchanged through the configuration
+    // port; legal: 0, 1
     parameter integer SIMULATION = 0,
-    // start of the random numbers of a simulated reconfiguration, any
-    parameter integer SEED = 1
+    parameter integer SEED = 1  // start of the random numbers; legal: any
 ) (
-    input  wire                                clk,
-    input  wire                                rst,
-    // control
-    input  wire                                decouple,
+    input  wire                                clk,             // clock, rising edge
+    input  wire                                rst,             // synchronous reset, active high
+    // ---- control
+    input  wire                                decouple,  // cut the region off; independent of rst
+    // decouple one clock later: every output of the region is constant
     output wire                                decoupled,
+    // reset of the module as a level, one clock later
     input  wire                                hold_reset,
+    // 1 for one clock: reset of the module for ROC_CYCLES clocks
     input  wire                                roc_start,
+    // 1 from the clock after roc_start or rst to the last clock of that reset
     output wire                                roc_busy,
+    // number of the module in the region, not gated: to be compared before recoupling
     output wire [          `CCHIP_RM_ID_W-1:0] region_rm_id,
-    // configuration port of the device
+    // ---- configuration port of the device
+    // a word is written to the configuration port; ignored if SIMULATION = 0
     input  wire                                cfg_valid,
-    input  wire [                   CFG_W-1:0] cfg_data,
-    // records VERTEX and SLOT_RESULT
-    input  wire                                s_vertex_valid,
+    input  wire [                   CFG_W-1:0] cfg_data,        // the word, low byte first
+    // ---- records VERTEX and SLOT_RESULT
+    input  wire                                s_vertex_valid,  // a vertex of each primitive
+    // record VERTEX, docs/hardware/definitions.md
     input  wire [`CCHIP_VERTEX_W(COORD_W)-1:0] s_vertex_data,
-    output wire                                m_result_valid,
+    output wire                                m_result_valid,  // a result
+    // record SLOT_RESULT, docs/hardware/definitions.md
     output wire [    `CCHIP_SLOT_RESULT_W-1:0] m_result_data,
+    // number of the module; CCHIP_RM_BLANK while decoupled or in reset
     output wire [          `CCHIP_RM_ID_W-1:0] rm_id,
+    // nothing inside; 1 while decoupled or in reset
     output wire                                idle
 );
 

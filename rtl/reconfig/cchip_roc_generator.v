@@ -9,14 +9,26 @@
 //   latency      1 clock
 //   cuts         every path: roc is a flip-flop
 //   reset        rst counts as a configuration; so does power-up: roc is 1 for CYCLES clocks then
+//   about        Reset on configuration, listing 3.3 and figure 8 of the paper: a module that has
+//                no reset of its own after a configuration, or is closed source, gets one of CYCLES
+//                clocks from outside. Used by cchip_pr_slot, usable alone.
+//                clk         _/~\_/~\_/~\_/~\_/~\_/~\_
+//                configured  ___/~~~\_________________
+//                roc         _______/~~~~~~~\_________   CYCLES = 2
+//   timing       A pulse makes exactly CYCLES clocks; a level makes a reset that begins one clock
+//                after it and ends CYCLES clocks after its last clock; a second configuration
+//                during the reset starts it again.
+//   why          The paper writes roc_out.write(true); wait(); wait(); roc_out.write(false). One
+//                register per clock of the reset is that as hardware; it needs no counter and
+//                cannot be left in a state it does not leave by itself.
 module cchip_roc_generator #(
-    // length of the reset, clocks, 1..32
-    parameter integer CYCLES = 2
+    parameter integer CYCLES = 2  // length of the reset (clock); legal: 1..32
 ) (
-    input  wire clk,
-    input  wire rst,
+    input  wire clk,         // clock, rising edge
+    input  wire rst,         // synchronous reset, active high; counts as a configuration
+    // 1 on one clock, or on as many as one likes: a configuration has ended
     input  wire configured,
-    output wire roc
+    output wire roc          // reset of the module
 );
 
   `CCHIP_REFUSE(CYCLES < 1 || CYCLES > 32, cchip_error_ROC_CYCLES_must_be_1_to_32)

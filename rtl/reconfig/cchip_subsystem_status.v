@@ -6,15 +6,21 @@
 //   latency      1 clock from a report to every output
 //   cuts         every path: each output is a flip-flop
 //   reset        all 0; clear: lost 0, a report on its clock is not in lost
+//   numbers      lost wraps at 2^32. cchip_counter_file has what is counted one by one.
+//   why          A report may bring up to 65,535 pairs, so their sum has an adder of its own.
 module cchip_subsystem_status (
-    input  wire                            clk,
-    input  wire                            rst,
+    input  wire                            clk,           // clock, rising edge
+    input  wire                            rst,           // synchronous reset, active high
+    // sets lost to 0; a report on this clock is not counted
     input  wire                            clear,
-    input  wire                            report_valid,
+    input  wire                            report_valid,  // a swap ended or was refused, one clock
+    // the report: record SWAP_REPORT, docs/hardware/definitions.md
     input  wire [`CCHIP_SWAP_REPORT_W-1:0] report_data,
+    // the last report: record SWAP_REPORT, docs/hardware/definitions.md
     output wire [`CCHIP_SWAP_REPORT_W-1:0] last_report,
-    output wire [                     2:0] swap_events,  // {lost, error, done}, one clock
-    output wire [                    31:0] lost
+    // {lost, error, done} of a report, one clock
+    output wire [                     2:0] swap_events,
+    output wire [                    31:0] lost           // pairs given up, sum
 );
 
   reg [`CCHIP_SWAP_REPORT_W-1:0] last_report_q;

@@ -12,36 +12,39 @@
 //   cuts         every path: each output is a flip-flop, given_up a choice among inputs
 //   reset        none: the fields count from the first begins on
 module cchip_swap_request #(
-    // slots, 1..4
-    parameter integer SLOTS = 1
+    parameter integer SLOTS = 1  // slots; legal: 1..4
 ) (
-    input  wire                                 clk,
+    input  wire                                 clk,            // clock, rising edge
+    // {force, size, address, module, slot}
     input  wire [    `CCHIP_SWAP_REQUEST_W-1:0] s_swap_data,
-    input  wire                                 begins,
+    input  wire                                 begins,         // the swap of s_swap_data begins
+    // a request is accepted, or refused because a swap is at work
     input  wire                                 accept,
-    // the slots
-    input  wire [                    SLOTS-1:0] quiet,
-    input  wire [                    SLOTS-1:0] decoupled,
+    // ---- the slots
+    input  wire [                    SLOTS-1:0] quiet,  // bit of each slot: no pair is inside
+    input  wire [                    SLOTS-1:0] decoupled,      // bit of each slot: it is decoupled
+    // bit of each slot: its reset on configuration is at work
     input  wire [                    SLOTS-1:0] roc_busy,
-    input  wire [     `CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id,
-    input  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] lost,
-    // the request
-    output wire [         `CCHIP_SLOT_ID_W-1:0] slot,
-    output wire [           `CCHIP_RM_ID_W-1:0] module_id,
-    output wire [                         31:0] address,
-    output wire [                         31:0] size,
+    input  wire [     `CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id,   // module that each slot shows
+    input  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] lost,           // pairs that each slot has given up
+    // ---- the request
+    output wire [         `CCHIP_SLOT_ID_W-1:0] slot,           // slot
+    output wire [           `CCHIP_RM_ID_W-1:0] module_id,      // module
+    output wire [                         31:0] address,        // address of the bitstream
+    output wire [                         31:0] size,           // its size, byte
     output wire                                 forced,         // pairs may be given up
-    output wire [                    SLOTS-1:0] mine,           // its slot, one-hot; 0: none
-    output wire [         `CCHIP_SLOT_ID_W-1:0] refuse_slot,
-    output wire [           `CCHIP_RM_ID_W-1:0] refuse_module,
-    // its slot
-    output wire                                 is_quiet,
-    output wire                                 is_decoupled,
+    // its slot, one-hot; 0 if there is no such slot
+    output wire [                    SLOTS-1:0] mine,
+    output wire [         `CCHIP_SLOT_ID_W-1:0] refuse_slot,  // slot of the request that is refused
+    output wire [           `CCHIP_RM_ID_W-1:0] refuse_module,  // its module
+    output wire                                 is_quiet,       // no pair is inside the slot
+    output wire                                 is_decoupled,   // the slot is decoupled
+    // its reset on configuration is at work
     output wire                                 is_roc_busy,
-    output wire                                 match,          // shows the module asked for
+    output wire                                 match,  // the slot shows the module asked for
     output wire                                 same,           // and is at work with it
-    output wire                                 illegal,
-    output wire [      `CCHIP_PAIR_COUNT_W-1:0] given_up        // pairs lost by force
+    output wire                                 illegal,        // the request is illegal
+    output wire [      `CCHIP_PAIR_COUNT_W-1:0] given_up        // pairs that the slot has given up
 );
 
   wire [`CCHIP_SLOT_ID_W-1:0] s_swap_slot;

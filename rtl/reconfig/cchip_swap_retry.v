@@ -13,19 +13,37 @@
 //   latency      1 clock from the report to resting
 //   cuts         every path: each output comes from flip-flops
 //   reset        nothing rests, level 0
+//   timing       resting rises on the clock after the report and is 1 for exactly
+//                CCHIP_RETRY_CLOCKS << level clocks, counted from the latest failure. All outputs
+//                come from flip-flops. An entry is hopeless while it rests after eight failures in
+//                a row or more, counted while any entry has failed and not ended well; when its
+//                rest is over it is tried again.
+//   numbers      DEVICE, BUS, MEMORY, SHUTDOWN, ABORTED, OWED. 256, 512, ... 65536 clocks
+//                (docs/hardware/definitions.md).
+//   inside       A bit per entry: it failed and has not ended well since. One timer for all of them
+//                and one level, which grows by one after each rest and is 0 once no bit is left. An
+//                entry whose valid bit falls is cleared.
+//   why          A fault of the transfer passes: outstanding beats arrive, a bus recovers, an abort
+//                was meant for that moment. Discarding the bitstream would leave pairs without a
+//                test for no reason; trying again at once would keep the bus and the slot busy. -
+//                One timer: swaps come one after the other, so the rests of several entries may as
+//                well end together. - A swap of another entry that ends well does not end the rest:
+//                otherwise two kinds in turn would never back off.
 module cchip_swap_retry #(
-    // slots, 1..4
-    parameter integer SLOTS = 1,
-    // kinds of pairs, 3, or 4 with points: the modules are 0..KINDS
+    parameter integer SLOTS = 1,  // slots; legal: 1..4
+    // kinds of pairs, 4 with points against triangles; the modules are 0..KINDS; legal: 3, 4
     parameter integer KINDS = 3
 ) (
-    input  wire                            clk,
-    input  wire                            rst,
-    input  wire                            report_valid,  // one clock
+    input  wire                            clk,                  // clock, rising edge
+    input  wire                            rst,                  // synchronous reset, active high
+    input  wire                            report_valid,  // a report of the controller, one clock
+    // the report: record SWAP_REPORT, docs/hardware/definitions.md
     input  wire [`CCHIP_SWAP_REPORT_W-1:0] report_data,
-    // entries of cchip_bitstream_table
-    input  wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] valid,  // there is a bitstream
+    // there is a bitstream; entries as in cchip_bitstream_table
+    input  wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] valid,
+    // the entry must not be tried by itself
     output wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] resting,
+    // entries that rest after eight failures in a row or more
     output wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] hopeless
 );
 

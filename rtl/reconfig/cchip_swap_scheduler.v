@@ -29,49 +29,59 @@
 //                those of the table
 //   reset        no request, no report, age 0
 module cchip_swap_scheduler #(
-    // slots, 1..4
-    parameter integer SLOTS = 2,
-    // kinds of pairs, 3, or 4 with points: the modules are 0..KINDS
+    parameter integer SLOTS = 2,   // slots; legal: 1..4
+    // kinds of pairs, 4 with points against triangles; the modules are 0..KINDS; legal: 3, 4
     parameter integer KINDS = 3,
-    // width of the number of waiting pairs, bit, 1..16
-    parameter integer COUNT_W = 9
+    parameter integer COUNT_W = 9  // width of the number of waiting pairs (bit); legal: 1..16
 ) (
-    input  wire                             clk,
-    input  wire                             rst,
-    // registers
-    input  wire                             enable,
-    input  wire [                     31:0] min_batch,
+    input  wire                             clk,                          // clock, rising edge
+    input  wire                             rst,  // synchronous reset, active high
+    // ---- registers
+    input  wire                             enable,  // 1: exchange modules without being asked
+    input  wire [                     31:0] min_batch,  // pairs that are worth a swap
+    // clocks after which an unserved kind gets a slot regardless of the batch
     input  wire [                     31:0] max_age,
-    // bitstreams: entries of cchip_bitstream_table
+    // ---- bitstreams: entries of cchip_bitstream_table
+    // there is a bitstream; entries as in cchip_bitstream_table
     input  wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] table_valid,
+    // the bitstream or its entry is bad (CCHIP_SWAP_SPOILT), one clock
     output wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] table_invalidate,
+    // the entry must not be tried now, except by a command (cchip_swap_retry)
     input  wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] table_resting,
+    // entries that no pair should wait for
     input  wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] table_hopeless,
-    // the entry of the swap; its address and size come 2 clocks after table_look and stay
-    output wire                             table_look,
-    output wire [                      4:0] table_entry,  // {slot, module (3 bits)}
+    // ---- the entry of the swap; its address and size come 2 clocks after table_look and stay
+    output wire                             table_look,  // address and size of an entry are needed
+    // {slot, module (3 bits)}; stays until the request is taken
+    output wire [                      4:0] table_entry,
+    // its address, 2 clocks later, until the next look-up (cchip_bitstream_table)
     input  wire [                     31:0] table_address,
-    input  wire [                     31:0] table_size,
-    // queues, kind k at place k - 1
+    input  wire [                     31:0] table_size,  // its size likewise, header included
+    // ---- queues, kind k at place k - 1
+    // pairs in the queue of kind k, at place k - 1
     input  wire [        KINDS*COUNT_W-1:0] waiting,
-    input  wire [                KINDS-1:0] full,
+    input  wire [                KINDS-1:0] full,  // the queue of kind k is full, at place k - 1
+    // bit k - 1: no slot and no bitstream provides kind k
     output wire [                KINDS-1:0] no_provider,
-    // slots: module that works (ModuleId, 0: none or decoupled)
+    // 3 bits per slot: module that works, ModuleId; 0: none or decoupled
     input  wire [  `CCHIP_KIND_W*SLOTS-1:0] slot_module,
-    // software's swap, one clock
-    input  wire                             command_valid,
-    input  wire [     `CCHIP_SLOT_ID_W-1:0] command_slot,
-    input  wire [       `CCHIP_RM_ID_W-1:0] command_module,
+    // ---- software's swap, one clock
+    input  wire                             command_valid,  // swap by software, one clock
+    input  wire [     `CCHIP_SLOT_ID_W-1:0] command_slot,                 // its slot
+    input  wire [       `CCHIP_RM_ID_W-1:0] command_module,               // its module
+    // give up pairs that are not answered in time
     input  wire                             command_force,
-    // to the configuration controller
-    output wire                             m_swap_valid,
-    input  wire                             m_swap_ready,
+    // ---- to the configuration controller
+    output wire                             m_swap_valid,                 // a swap is asked for
+    input  wire                             m_swap_ready,  // the controller takes the request
+    // the request: record SWAP_REQUEST, docs/hardware/definitions.md
     output wire [`CCHIP_SWAP_REQUEST_W-1:0] m_swap_data,
-    // its report, one clock
-    input  wire                             s_report_valid,
+    input  wire                             s_report_valid,  // report of the controller, one clock
+    // the report: record SWAP_REPORT, docs/hardware/definitions.md
     input  wire [ `CCHIP_SWAP_REPORT_W-1:0] s_report_data,
-    // the same, and the reports of refused commands, one clock
+    // the same, and reports of refused commands, one clock
     output wire                             m_report_valid,
+    // the report: record SWAP_REPORT, docs/hardware/definitions.md
     output wire [ `CCHIP_SWAP_REPORT_W-1:0] m_report_data
 );
 

@@ -26,46 +26,63 @@
 //   reset        no swap, slots at work, except one whose transfer had begun and not ended well
 //                (cchip_swap_signals)
 module cchip_swap_sequencer #(
-    // slots, 1..4
-    parameter integer SLOTS = 1,
-    // longest wait for a slot to decouple, to end its ROC, to recouple, clocks, >= 16
+    parameter integer SLOTS = 1,         // slots; legal: 1..4
+    // longest wait for a slot to decouple, to end its reset on configuration, to recouple (clock);
+    // legal: >= 16
     parameter integer SLOT_LIMIT = 4096
 ) (
-    input  wire                                 clk,
-    input  wire                                 rst,
-    input  wire                                 s_swap_valid,
+    input  wire                                 clk,             // clock, rising edge
+    input  wire                                 rst,             // synchronous reset, active high
+    input  wire                                 s_swap_valid,    // a swap is requested
+    // the request is taken if s_swap_valid = 1 as well; 1 also during a swap
     output wire                                 s_swap_ready,
+    // the request: record SWAP_REQUEST, docs/hardware/definitions.md
     input  wire [    `CCHIP_SWAP_REQUEST_W-1:0] s_swap_data,
+    // 1 for one clock: a report; there is no ready
     output wire                                 m_report_valid,
+    // the report: record SWAP_REPORT, docs/hardware/definitions.md
     output wire [     `CCHIP_SWAP_REPORT_W-1:0] m_report_data,
+    // 1: abort the swap in progress; ignored without one and from RECOUPLE on
     input  wire                                 abort_swap,
-    input  wire [                         31:0] shutdown_limit,   // clocks; 0: default
-    output wire [                    SLOTS-1:0] stop,
+    // longest wait for the pairs inside: 1..2^32 - 1 clocks; 0: CCHIP_SHUTDOWN_LIMIT_DEFAULT
+    input  wire [                         31:0] shutdown_limit,
+    output wire [                    SLOTS-1:0] stop,            // per slot: accept no more pairs
+    // per slot: outputs of the region become constants
     output wire [                    SLOTS-1:0] decouple,
-    output wire [                    SLOTS-1:0] hold_reset,
+    output wire [                    SLOTS-1:0] hold_reset,      // per slot: the region is in reset
+    // per slot: 1 for one clock starts the reset on configuration
     output wire [                    SLOTS-1:0] roc_start,
+    // per slot: stop is in force and every accepted pair was answered
     input  wire [                    SLOTS-1:0] quiet,
-    input  wire [                    SLOTS-1:0] decoupled,
+    input  wire [                    SLOTS-1:0] decoupled,       // per slot: it is decoupled
+    // per slot: reset on configuration in progress, from the clock after roc_start on
     input  wire [                    SLOTS-1:0] roc_busy,
+    // per slot: module in the region, behind no gate
     input  wire [     `CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id,
+    // per slot: pairs lost by decoupling it; read when decoupled rises
     input  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] lost,
-    output wire [           `CCHIP_PHASE_W-1:0] phase,
-    output wire [                         31:0] phase_clocks,     // in this phase, 1 on the first
-    output wire                                 busy,             // a phase other than IDLE
-    output wire [         `CCHIP_SLOT_ID_W-1:0] slot,             // of the request
-    output wire [           `CCHIP_RM_ID_W-1:0] module_id,
-    output wire [                         31:0] address,
-    output wire [                         31:0] size,
-    // the fetch works, in HEADER and in TRANSFER
-    output wire                                 run,
-    input  wire                                 header_done,
-    input  wire                                 header_ok,
-    input  wire [            `CCHIP_SWAP_W-1:0] header_code,
+    output wire [           `CCHIP_PHASE_W-1:0] phase,           // its phase, SwapPhase
+    // clocks in this phase, 1 on its first
+    output wire [                         31:0] phase_clocks,
+    output wire                                 busy,            // the phase is not IDLE
+    output wire [         `CCHIP_SLOT_ID_W-1:0] slot,            // of the request
+    output wire [           `CCHIP_RM_ID_W-1:0] module_id,       // of the request
+    output wire [                         31:0] address,         // of the request
+    output wire [                         31:0] size,            // of the request
+    output wire                                 run,  // the fetch works, in HEADER and TRANSFER
+    input  wire                                 header_done,     // the header is here and judged
+    input  wire                                 header_ok,       // it is right
+    input  wire [            `CCHIP_SWAP_W-1:0] header_code,     // what is wrong with it
+    // an address is not taken yet or beats are to come
     input  wire                                 outstanding,
-    input  wire                                 bus_error,
+    input  wire                                 bus_error,       // error on the bus, until run = 0
+    // limit clocks without an address taken or a beat, until run = 0
     input  wire                                 timeout,
-    input  wire                                 transfer_done,
-    input  wire                                 crc_ok,
+    input  wire                                 transfer_done,   // the payload has passed the port
+    input  wire                                 crc_ok,          // its CRC is right
+    // the device reports an error, from any clock: a level, or a pulse of at least two clocks of
+    // clk, as it passes two flip-flops and a shorter one may be lost; looked at during TRANSFER and
+    // CHECK
     input  wire                                 cfg_error
 );
 

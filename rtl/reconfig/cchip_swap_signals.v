@@ -16,27 +16,27 @@
 //                Its value at power-up is an initial value, because no reset can tell a power-up,
 //                after which every slot holds a whole module, from a reset in the middle of a
 //                transfer
+//   timing       1 clock from a step to the signals.
 module cchip_swap_signals #(
-    // slots, 1..4
-    parameter integer SLOTS = 1
+    parameter integer SLOTS = 1  // slots; legal: 1..4
 ) (
-    input  wire             clk,
-    input  wire             rst,
+    input  wire             clk,          // clock, rising edge
+    input  wire             rst,          // synchronous reset, active high
     input  wire [SLOTS-1:0] slot,         // of the swap, one-hot; 0 if there is no such slot
-    input  wire             fails,
-    input  wire             shut,
-    // the steps of a swap, each 1 for a clock
-    input  wire             to_stop,
-    input  wire             to_decouple,
-    input  wire             to_hold,
+    input  wire             fails,        // the swap ends badly
+    input  wire             shut,  // with fails: the slot stays stopped, decoupled and in reset
+    // ---- the steps of a swap, each 1 for a clock
+    input  wire             to_stop,      // step: stop the slot
+    input  wire             to_decouple,  // step: decouple it
+    input  wire             to_hold,      // step: hold it in reset
     input  wire             to_write,     // the transfer begins
-    input  wire             to_roc,       // it has ended well
-    input  wire             to_recouple,
-    input  wire             to_work,
-    output wire [SLOTS-1:0] stop,
-    output wire [SLOTS-1:0] decouple,
-    output wire [SLOTS-1:0] hold_reset,
-    output wire [SLOTS-1:0] roc_start
+    input  wire             to_roc,  // step: reset on configuration, the transfer has ended well
+    input  wire             to_recouple,  // step: couple it again
+    input  wire             to_work,      // step: back to work
+    output wire [SLOTS-1:0] stop,         // bit of each slot: takes no new pairs
+    output wire [SLOTS-1:0] decouple,     // bit of each slot: decouple
+    output wire [SLOTS-1:0] hold_reset,   // bit of each slot: the region is held in reset
+    output wire [SLOTS-1:0] roc_start     // bit of each slot: reset on configuration, for a clock
 );
 
   reg [SLOTS-1:0] stop_q, decouple_q, hold_reset_q, roc_start_q;

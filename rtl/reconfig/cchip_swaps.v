@@ -10,86 +10,106 @@
 //   slots        what a swap asks of a slot, and what the slot answers: cchip_config_controller
 //   cuts         every path but the reads of table_data and phase_clocks
 //   reset        no swap; a slot whose rewriting was cut off stays decoupled until a good swap
+//   timing       A report is in the registers a clock after it.
+//   inside       Wiring, and which slot the phase in progress belongs to.
+//   why          It is beside the registers, which set it, and not among the pairs. So a reset of
+//                the core leaves a swap alone, and between it and cchip_slots there are twelve
+//                handshakes instead of forty signals through every level.
+//   test         With its two users: tests/unit/test_cchip_primtest_subsystem.cpp, make
+//                campaign-swaps, scripts/run campaign-chip-swaps.
 module cchip_swaps #(
-    // kinds of pairs, 3, or 4 with points: the modules are 0..KINDS
+    // kinds of pairs, 4 with points against triangles; the modules are 0..KINDS; legal: 3, 4
     parameter integer KINDS = 3,
-    // slots, 1..4
-    parameter integer SLOTS = 1,
-    // 1: modules are exchanged at run time
-    parameter integer SWAPS = 1,
-    // width of the number of waiting pairs, bit, 1..16
-    parameter integer COUNT_W = 8,
-    // width of the configuration port, bit, 8 or 32
-    parameter integer CFG_W = 8,
-    // clocks per word of the port
-    parameter integer CFG_DIVIDER = 2,
-    // AxCACHE of reads, 0..15, and AxPROT, 0..7
+    parameter integer SLOTS = 1,        // slots; legal: 1..4
+    parameter integer SWAPS = 1,        // 0: there are none, every output is 0; legal: 0, 1
+    parameter integer COUNT_W = 8,      // width of the number of waiting pairs (bit); legal: 1..16
+    parameter integer CFG_W = 8,        // width of the configuration port (bit); legal: 8, 32
+    parameter integer CFG_DIVIDER = 2,  // clocks per word of the port; legal: from 1 on
+    // ARCACHE: 3 normal memory, 15 a coherent port; legal: 0..15
     parameter integer AXI_ARCACHE = 3,
-    parameter integer AXI_PROT = 0
+    parameter integer AXI_PROT = 0      // AxPROT: 0 secure, 2 non-secure; legal: 0..7
 ) (
-    input  wire                                 clk,
-    input  wire                                 rst,
-    // queues of waiting pairs, of the kinds from 1 on; a full one is worth a swap
-    input  wire [            KINDS*COUNT_W-1:0] waiting,
-    input  wire [                    KINDS-1:0] full,
-    output wire [                    KINDS-1:0] no_provider,     // no slot can get it
-    // slots
-    input  wire [       `CCHIP_KIND_W*SLOTS-1:0] slot_module,
-    output wire [                    SLOTS-1:0] stop,
-    output wire [                    SLOTS-1:0] decouple,
-    output wire [                    SLOTS-1:0] hold_reset,
+    input  wire                                 clk,             // clock, rising edge
+    input  wire                                 rst,             // synchronous reset, active high
+    // ---- queues of waiting pairs, of the kinds from 1 on; a full one is worth a swap
+    input  wire [            KINDS*COUNT_W-1:0] waiting,  // pairs in the queues of kinds 1, 2, 3
+    input  wire [                    KINDS-1:0] full,  // a queue that is full is worth a swap
+    // bit k - 1: no slot can get the module of kind k
+    output wire [                    KINDS-1:0] no_provider,
+    // ---- slots
+    input  wire [       `CCHIP_KIND_W*SLOTS-1:0] slot_module,  // module that a slot shows, 0: none
+    output wire [                    SLOTS-1:0] stop,            // the slot gets no further pairs
+    output wire [                    SLOTS-1:0] decouple,  // the slot is cut off from the rest
+    output wire [                    SLOTS-1:0] hold_reset,      // the slot is held in reset
+    // its reset on configuration begins, one clock
     output wire [                    SLOTS-1:0] roc_start,
-    input  wire [                    SLOTS-1:0] quiet,
+    input  wire [                    SLOTS-1:0] quiet,  // it has no pairs and will get none
+    // it is cut off and all its pairs are answered
     input  wire [                    SLOTS-1:0] decoupled,
-    input  wire [                    SLOTS-1:0] roc_busy,
-    input  wire [     `CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id,
-    input  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] slot_lost,
-    // registers
-    output wire [         4*`CCHIP_PHASE_W-1:0] phase,           // of four slots
-    input  wire                                 clear,           // lost, clocks of phases
+    input  wire [                    SLOTS-1:0] roc_busy,        // its reset on configuration lasts
+    input  wire [     `CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id,    // module in the partition
+    input  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] slot_lost,  // pairs that it gave up in this swap
+    // ---- registers
+    output wire [         4*`CCHIP_PHASE_W-1:0] phase,  // of each of four slots: phase of its swap
+    input  wire                                 clear,  // 1: lost and clocks of phases become 0
+    // 1: abort the swap in progress; ignored without one and from RECOUPLE on
     input  wire                                 abort_swap,
-    input  wire                                 enable,          // of the scheduler
-    input  wire                                 command_valid,
-    input  wire [         `CCHIP_SLOT_ID_W-1:0] command_slot,
-    input  wire [           `CCHIP_RM_ID_W-1:0] command_module,
+    // 1: the scheduler exchanges modules by itself
+    input  wire                                 enable,
+    input  wire                                 command_valid,  // a swap by software, 1 for a clock
+    input  wire [         `CCHIP_SLOT_ID_W-1:0] command_slot,    // its slot
+    input  wire [           `CCHIP_RM_ID_W-1:0] command_module,  // its module
+    // give up pairs that are not answered in time
     input  wire                                 command_force,
-    input  wire [                         31:0] shutdown_limit,  // clocks; 0: default
-    input  wire [                         31:0] memory_limit,    // clocks; 0: default
-    input  wire [                         31:0] min_batch,
+    // longest wait for the pairs inside: 1..2^32 - 1 clocks; 0: CCHIP_SHUTDOWN_LIMIT_DEFAULT
+    input  wire [                         31:0] shutdown_limit,
+    // longest wait for an address to be taken or a beat: 1..2^32 - 1 clocks; 0:
+    // CCHIP_MEMORY_LIMIT_DEFAULT
+    input  wire [                         31:0] memory_limit,
+    input  wire [                         31:0] min_batch,       // pairs that are worth a swap
+    // clocks after which an unserved kind gets a slot regardless of the batch
     input  wire [                         31:0] max_age,
+    // the last report: record SWAP_REPORT, docs/hardware/definitions.md
     output wire [     `CCHIP_SWAP_REPORT_W-1:0] last_report,
-    output wire [                          2:0] swap_events,     // {lost, error, done}, one clock
-    output wire [                         31:0] lost,
-    // table of bitstreams and clocks of phases, read within the clock
+    // {lost, error, done} of a report, one clock
+    output wire [                          2:0] swap_events,
+    output wire [                         31:0] lost,            // pairs lost by swaps with force
+    // ---- table of bitstreams and clocks of phases, read within the clock
+    // 1 for a clock: a word of the table is written
     input  wire                                 write_table,
-    input  wire [                          6:0] write_word,
-    input  wire [                         31:0] write_data,
-    input  wire [                          3:0] write_bytes,
+    input  wire [                          6:0] write_word,      // which
+    input  wire [                         31:0] write_data,      // what is written
+    input  wire [                          3:0] write_bytes,     // which bytes
+    // word of the table, or phase, that is read
     input  wire [                          6:0] read_word,
-    output wire [                         31:0] table_data,
-    output wire [                         31:0] phase_clocks,    // of phase read_word
-    // to be counted, one clock each
-    output wire                                 swapped,
+    output wire [                         31:0] table_data,      // word of the table
+    output wire [                         31:0] phase_clocks,    // clocks of the phase read_word
+    // ---- to be counted, one clock each
+    output wire                                 swapped,         // a swap ended well, one clock
+    // a swap failed or was refused, SAME not counted, one clock
     output wire                                 rejected,
-    output wire                                 stall,
-    // memory of the bitstreams, AXI4, read only
-    output wire                                 m_axi_arvalid,
-    input  wire                                 m_axi_arready,
-    output wire [                         31:0] m_axi_araddr,
-    output wire [                          7:0] m_axi_arlen,
-    output wire [                          2:0] m_axi_arsize,
-    output wire [                          1:0] m_axi_arburst,
-    output wire [                          3:0] m_axi_arcache,
-    output wire [                          2:0] m_axi_arprot,
-    input  wire                                 m_axi_rvalid,
-    output wire                                 m_axi_rready,
-    input  wire [                         31:0] m_axi_rdata,
-    input  wire [                          1:0] m_axi_rresp,
-    input  wire                                 m_axi_rlast,
-    // configuration port of the device
+    output wire                                 stall,  // a slot of the port passed without data
+    // ---- memory of the bitstreams, AXI4, read only
+    output wire                                 m_axi_arvalid,   // AXI4 read, address
+    input  wire                                 m_axi_arready,   // AXI4 read, address
+    output wire [                         31:0] m_axi_araddr,    // AXI4 read, address, byte
+    output wire [                          7:0] m_axi_arlen,     // AXI4 read, beats - 1, at most 15
+    output wire [                          2:0] m_axi_arsize,    // AXI4 read, 2: 4 bytes per beat
+    output wire [                          1:0] m_axi_arburst,   // AXI4 read, 1: INCR
+    output wire [                          3:0] m_axi_arcache,   // AXI4 read, constant
+    output wire [                          2:0] m_axi_arprot,    // AXI4 read, constant
+    input  wire                                 m_axi_rvalid,    // AXI4 read, data
+    output wire                                 m_axi_rready,    // AXI4 read, data
+    input  wire [                         31:0] m_axi_rdata,     // AXI4 read, data
+    input  wire [                          1:0] m_axi_rresp,     // AXI4 read, response
+    input  wire                                 m_axi_rlast,  // AXI4 read, last beat of the burst
+    // ---- configuration port of the device
+    // a word is written to the configuration port
     output wire                                 cfg_valid,
-    output wire [                    CFG_W-1:0] cfg_data,
-    input  wire                                 cfg_error        // any clock; level, or 2 clocks
+    output wire [                    CFG_W-1:0] cfg_data,        // the word
+    // the device reports an error of its configuration, from any clock; a level, or a pulse of at
+    // least two clocks of clk
+    input  wire                                 cfg_error
 );
 
   localparam integer PHASE_W = `CCHIP_PHASE_W;

@@ -12,17 +12,26 @@
 //   cuts         every path: each output is a flip-flop
 //   reset        no pair begun. m_pair_valid has no ready: the sender's credit says that there is
 //                room
+//   about        The vertices of a pair, one of A and one of B per clock, become a request for
+//                cchip_primtest. It is the entry of a reconfigurable module (cchip_pr_region).
+//   timing       No ready: the credit of the ledger says that the test has room.
+//   numbers      A test of quads gives it the exact answer on the grid, as its own test would;
+//                witness, beats and certainty may differ.
+//   why          first always begins a pair. A pair that was cut off by a swap leaves nothing
+//                behind, and a region that was rewritten in the middle of a pair waits for the next
+//                first.
 module cchip_vertex_collector #(
-    // width of a coordinate, bit, 4..20
-    parameter integer COORD_W = 16
+    parameter integer COORD_W = 16  // width of a signed coordinate (bit); legal: 4..20
 ) (
-    input  wire                                 clk,
-    input  wire                                 rst,
-    input  wire                                 s_vertex_valid,
-    input  wire [ `CCHIP_VERTEX_W(COORD_W)-1:0] s_vertex_data,
-    output wire                                 m_pair_valid,   // one clock
+    input  wire                                 clk,             // clock, rising edge
+    input  wire                                 rst,             // synchronous reset, active high
+    input  wire                                 s_vertex_valid,  // a vertex of each primitive
+    input  wire [ `CCHIP_VERTEX_W(COORD_W)-1:0] s_vertex_data,   // record VERTEX
+    // 1 for one clock: the pair is complete
+    output wire                                 m_pair_valid,
+    // record REQUEST; its tag is the number of the pair
     output wire [`CCHIP_REQUEST_W(COORD_W)-1:0] m_pair_data,
-    output wire                                 busy            // a pair is begun or complete
+    output wire                                 busy             // a pair is begun or complete
 );
 
   localparam integer POINT_W = `CCHIP_POINT_W(COORD_W);

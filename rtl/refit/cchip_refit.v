@@ -22,43 +22,44 @@
 //   cuts         every path: each output is a flip-flop or decoded from the state
 //   reset        must reset the masters too; memory may hold a part of the new nodes
 module cchip_refit #(
-    // levels of nodes, leaves not included: 2..64; a tree of the library has 47 at most
+    // levels of nodes in work, leaves not included; a tree of the library has 47 at most; legal:
+    // 2..64
     parameter integer LEVELS = 48,
-    // width of the data bus, bit: 64, 128, 256 or 512
-    parameter integer DATA_W = 128
+    parameter integer DATA_W = 128  // width of the data bus (bit); legal: 64, 128, 256, 512
 ) (
-    input  wire                           clk,
-    input  wire                           rst,
-    input  wire [                   31:0] limit,          // clocks; 0: default
-    input  wire                           s_abort,        // a pulse or longer
-    // a refit
-    input  wire                           s_valid,
-    output wire                           s_ready,
+    input  wire                           clk,            // clock, rising edge
+    input  wire                           rst,            // synchronous reset, active high
+    input  wire [                   31:0] limit,  // longest wait for memory, clocks; 0: default
+    // ends the refit before its next request; a pulse or longer
+    input  wire                           s_abort,
+    input  wire                           s_valid,        // a refit
+    output wire                           s_ready,        // it is taken
     input  wire [                   31:0] s_base,         // address of the image / 64
-    input  wire [                   31:0] s_lines,        // of the image
-    input  wire [                   23:0] s_root,         // line of the root
-    // its end
-    output wire                           m_valid,
-    input  wire                           m_ready,
-    output wire [`CCHIP_REFIT_CODE_W-1:0] m_code,
+    input  wire [                   31:0] s_lines,        // lines of the image
+    input  wire [                   23:0] s_root,         // line of its root
+    // ---- its end
+    output wire                           m_valid,        // the refit has ended
+    input  wire                           m_ready,        // its end is taken
+    output wire [`CCHIP_REFIT_CODE_W-1:0] m_code,         // RefitCode
+    // line at work when it ended, 0 if there was none
     output wire [                   23:0] m_line,
-    output wire [                   23:0] m_lines,
-    // reads
-    output wire                           m_read_valid,   // no ready
-    output wire [                   31:0] m_read_line,    // address / 64
-    input  wire                           s_read_valid,
-    input  wire                           s_read_last,
-    input  wire [ `CCHIP_READ_CODE_W-1:0] s_read_code,
-    input  wire [             DATA_W-1:0] s_read_data,
-    // writes
-    output wire                           m_write_valid,
-    input  wire                           m_write_ready,
-    output wire                           m_write_last,
-    output wire [                   31:0] m_write_line,
-    output wire [                    2:0] m_write_beat,
-    output wire [             DATA_W-1:0] m_write_data,
-    input  wire                           s_write_valid,
-    input  wire [`CCHIP_WRITE_CODE_W-1:0] s_write_code
+    output wire [                   23:0] m_lines,        // lines read
+    // ---- reads
+    output wire                           m_read_valid,   // a read; there is no ready
+    output wire [                   31:0] m_read_line,    // its address / 64
+    input  wire                           s_read_valid,   // a beat of its answer
+    input  wire                           s_read_last,    // the last one
+    input  wire [ `CCHIP_READ_CODE_W-1:0] s_read_code,    // with it, the code of cchip_axi_read
+    input  wire [             DATA_W-1:0] s_read_data,    // the beat
+    // ---- writes
+    output wire                           m_write_valid,  // a beat of a write
+    input  wire                           m_write_ready,  // it is taken
+    output wire                           m_write_last,   // the last one
+    output wire [                   31:0] m_write_line,   // address of the line / 64
+    output wire [                    2:0] m_write_beat,   // number of the beat
+    output wire [             DATA_W-1:0] m_write_data,   // the beat
+    input  wire                           s_write_valid,  // the answer
+    input  wire [`CCHIP_WRITE_CODE_W-1:0] s_write_code    // its code, of cchip_axi_write
 );
 
   localparam integer LEVEL_W = $clog2(LEVELS);

@@ -13,66 +13,71 @@
 //   reset        must reset the bus too, unless s_ready = 1 or m_valid = 1, and outstanding = 0:
 //                after an abort, wait for both
 module cchip_refit_axi #(
-    // levels of nodes, leaves not included: 2..64; a tree of the library has 47 at most
+    // levels of nodes in work, leaves not included; a tree of the library has 47 at most; legal:
+    // 2..64
     parameter integer LEVELS = 48,
-    // width of the data bus, bit: 64, 128, 256 or 512
-    parameter integer DATA_W = 128,
-    // AxCACHE of reads and of writes, 0..15, AxPROT of both, 0..7
+    parameter integer DATA_W = 128,     // width of the data bus (bit); legal: 64, 128, 256, 512
+    // ARCACHE: 3 normal memory, 15 a coherent port; legal: 0..15
     parameter integer AXI_ARCACHE = 3,
+    // AWCACHE: 2 normal memory, 15 a coherent port; legal: 0..15
     parameter integer AXI_AWCACHE = 2,
-    parameter integer AXI_PROT = 0
+    parameter integer AXI_PROT = 0      // AxPROT: 0 secure, 2 non-secure; legal: 0..7
 ) (
-    input  wire                           clk,
-    input  wire                           rst,
-    input  wire [                   31:0] limit,          // clocks; 0: default
-    input  wire                           s_abort,        // a pulse or longer
-    // a refit
-    input  wire                           s_valid,
-    output wire                           s_ready,
+    input  wire                           clk,            // clock, rising edge
+    input  wire                           rst,            // synchronous reset, active high
+    // longest read and longest write, clocks; 0: CCHIP_MEMORY_LIMIT_DEFAULT
+    input  wire [                   31:0] limit,
+    // ends the refit before its next request; a pulse or longer
+    input  wire                           s_abort,
+    input  wire                           s_valid,        // a refit
+    output wire                           s_ready,        // it is taken
     input  wire [                   31:0] s_base,         // address of the image / 64
-    input  wire [                   31:0] s_lines,        // of the image
-    input  wire [                   23:0] s_root,         // line of the root
-    // its end
-    output wire                           m_valid,
-    input  wire                           m_ready,
-    output wire [`CCHIP_REFIT_CODE_W-1:0] m_code,
+    input  wire [                   31:0] s_lines,        // lines of the image
+    input  wire [                   23:0] s_root,         // line of its root
+    // ---- its end
+    output wire                           m_valid,        // the refit has ended
+    input  wire                           m_ready,        // its end is taken
+    output wire [`CCHIP_REFIT_CODE_W-1:0] m_code,         // RefitCode, docs/hardware/definitions.md
+    // line at work when it ended, 0 if there was none
     output wire [                   23:0] m_line,
-    output wire [                   23:0] m_lines,
+    output wire [                   23:0] m_lines,        // lines read
+    // memory owes an answer to a request, given up or not
     output wire                           outstanding,
-    // memory
-    output wire                           m_axi_arvalid,
-    input  wire                           m_axi_arready,
-    output wire                           m_axi_arid,
-    output wire [                   63:0] m_axi_araddr,
-    output wire [                    7:0] m_axi_arlen,
-    output wire [                    2:0] m_axi_arsize,
-    output wire [                    1:0] m_axi_arburst,
-    output wire [                    3:0] m_axi_arcache,
-    output wire [                    2:0] m_axi_arprot,
-    input  wire                           m_axi_rvalid,
-    output wire                           m_axi_rready,
-    input  wire                           m_axi_rid,
-    input  wire [             DATA_W-1:0] m_axi_rdata,
-    input  wire [                    1:0] m_axi_rresp,
-    input  wire                           m_axi_rlast,
-    output wire                           m_axi_awvalid,
-    input  wire                           m_axi_awready,
-    output wire                           m_axi_awid,
-    output wire [                   63:0] m_axi_awaddr,
-    output wire [                    7:0] m_axi_awlen,
-    output wire [                    2:0] m_axi_awsize,
-    output wire [                    1:0] m_axi_awburst,
-    output wire [                    3:0] m_axi_awcache,
-    output wire [                    2:0] m_axi_awprot,
-    output wire                           m_axi_wvalid,
-    input  wire                           m_axi_wready,
-    output wire [             DATA_W-1:0] m_axi_wdata,
+    // ---- memory
+    output wire                           m_axi_arvalid,  // AXI4 read address
+    input  wire                           m_axi_arready,  // AXI4
+    output wire                           m_axi_arid,     // always 0
+    output wire [                   63:0] m_axi_araddr,   // address of a line, bytes
+    output wire [                    7:0] m_axi_arlen,    // a whole line: 512 / DATA_W - 1
+    output wire [                    2:0] m_axi_arsize,   // AXI4
+    output wire [                    1:0] m_axi_arburst,  // INCR
+    output wire [                    3:0] m_axi_arcache,  // AXI4
+    output wire [                    2:0] m_axi_arprot,   // AXI4
+    input  wire                           m_axi_rvalid,   // AXI4 read data
+    output wire                           m_axi_rready,   // always 1 after reset
+    input  wire                           m_axi_rid,      // AXI4
+    input  wire [             DATA_W-1:0] m_axi_rdata,    // AXI4
+    input  wire [                    1:0] m_axi_rresp,    // anything but OKAY is an error
+    input  wire                           m_axi_rlast,    // AXI4
+    output wire                           m_axi_awvalid,  // AXI4 write address
+    input  wire                           m_axi_awready,  // AXI4
+    output wire                           m_axi_awid,     // always 0
+    output wire [                   63:0] m_axi_awaddr,   // address of a line, bytes
+    output wire [                    7:0] m_axi_awlen,    // a whole line
+    output wire [                    2:0] m_axi_awsize,   // AXI4
+    output wire [                    1:0] m_axi_awburst,  // INCR
+    output wire [                    3:0] m_axi_awcache,  // AXI4
+    output wire [                    2:0] m_axi_awprot,   // AXI4
+    output wire                           m_axi_wvalid,   // AXI4 write data
+    input  wire                           m_axi_wready,   // AXI4
+    output wire [             DATA_W-1:0] m_axi_wdata,    // AXI4
+    // all ones; zeros for the rest of a write that was given up
     output wire [           DATA_W/8-1:0] m_axi_wstrb,
-    output wire                           m_axi_wlast,
-    input  wire                           m_axi_bvalid,
-    output wire                           m_axi_bready,
-    input  wire                           m_axi_bid,
-    input  wire [                    1:0] m_axi_bresp
+    output wire                           m_axi_wlast,    // AXI4
+    input  wire                           m_axi_bvalid,   // AXI4 write response
+    output wire                           m_axi_bready,   // always 1 after reset
+    input  wire                           m_axi_bid,      // AXI4
+    input  wire [                    1:0] m_axi_bresp     // anything but OKAY is an error
 );
 
   `CCHIP_REFUSE(DATA_W != 64 && DATA_W != 128 && DATA_W != 256 && DATA_W != 512,

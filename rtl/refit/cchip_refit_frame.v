@@ -10,18 +10,17 @@
 //   cuts         every path: each output is a flip-flop
 //   reset        no search
 module cchip_refit_frame (
-    input  wire        clk,
-    input  wire        rst,
-    // interval of an axis, 2^-48; axis 0 begins a new box
-    input  wire        s_valid,
-    input  wire [ 1:0] s_axis,
-    input  wire [51:0] s_least,
-    input  wire [51:0] s_greatest,
-    input  wire        search,
-    output wire        m_done,
-    output wire        m_none,
-    output wire [53:0] m_origin,
-    output wire [ 4:0] m_step
+    input  wire        clk,         // clock, rising edge
+    input  wire        rst,         // synchronous reset, active high
+    input  wire        s_valid,     // interval of an axis, 2^-48; axis 0 begins a new box
+    input  wire [ 1:0] s_axis,      // which; 0 begins a new box
+    input  wire [51:0] s_least,     // its least end, 2^-48
+    input  wire [51:0] s_greatest,  // its greatest end
+    input  wire        search,      // all three are here
+    output wire        m_done,      // the step is found, or there is none
+    output wire        m_none,      // with it: there is none
+    output wire [53:0] m_origin,    // origin, 3 x 18 bit
+    output wire [ 4:0] m_step       // step
 );
 
   localparam [4:0] STEP_MAX = 5'd18;

@@ -10,13 +10,13 @@
 //   cuts         every path: each output is a flip-flop
 //   reset        none
 module cchip_refit_leaf (
-    input  wire         clk,
-    input  wire [511:0] s_line,
-    input  wire         s_quad,
-    input  wire [  2:0] s_vertex,
-    input  wire [  5:0] s_axes,     // {negated, used}, 3 bit each, x first
-    output wire [ 51:0] m_least,
-    output wire [ 51:0] m_greatest
+    input  wire         clk,        // clock, rising edge
+    input  wire [511:0] s_line,     // the leaf
+    input  wire         s_quad,     // it is a quad
+    input  wire [  2:0] s_vertex,   // number of the vertex
+    input  wire [  5:0] s_axes,     // direction: axes {negated, used}, 3 bit each, x first
+    output wire [ 51:0] m_least,    // least position, 2^-48
+    output wire [ 51:0] m_greatest  // greatest position
 );
 
   wire [359:0] points = s_line[`CCHIP_LEAF_LINE_POINTS];

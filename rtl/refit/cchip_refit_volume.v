@@ -13,18 +13,18 @@
 //   cuts         every path: m_data is chosen between flip-flops, the others are flip-flops
 //   reset        nothing in flight
 module cchip_refit_volume (
-    input  wire        clk,
-    input  wire        rst,
+    input  wire        clk,             // clock, rising edge
+    input  wire        rst,             // synchronous reset, active high
     input  wire [53:0] s_origin,        // of the node, 3 x 18 bit, 2^-18
-    input  wire [ 4:0] s_step,
-    input  wire        s_cut_exponent,  // k - 2
-    input  wire        s_valid,
-    input  wire        s_axis,          // a direction of the box
-    input  wire [ 5:0] s_axes,          // {negated, used}, 3 bit each, x first
-    input  wire [51:0] s_least,         // 2^-48
-    input  wire [51:0] s_greatest,
-    output wire        m_valid,
-    output wire        m_axis,
+    input  wire [ 4:0] s_step,          // its step
+    input  wire        s_cut_exponent,  // its cut exponent - 2
+    input  wire        s_valid,         // an interval of the child
+    input  wire        s_axis,          // of an axis of the box
+    input  wire [ 5:0] s_axes,          // direction: axes {negated, used}, 3 bit each, x first
+    input  wire [51:0] s_least,         // least position, 2^-48
+    input  wire [51:0] s_greatest,      // greatest position
+    output wire        m_valid,         // a part of the volume
+    output wire        m_axis,          // of the box
     output wire [13:0] m_data           // {greatest, least}, or 0 and the cuts {lower, upper}
 );
 

@@ -18,128 +18,132 @@
 // later with the word on hwif_in_external_rdata, which is 0 otherwise. hwif_out_<name>_write, 1 for
 // a clock, writes those bytes of wdata whose bits in wstrb are 1 to word address waddr.
 module cchip_chip_regs (
-    input  wire clk,
-    input  wire rst,
-    input  wire s_axil_awvalid,
-    output wire s_axil_awready,
-    input  wire [11:0] s_axil_awaddr,
-    input  wire [2:0] s_axil_awprot,
-    input  wire s_axil_wvalid,
-    output wire s_axil_wready,
-    input  wire [31:0] s_axil_wdata,
-    input  wire [3:0] s_axil_wstrb,
-    output wire s_axil_bvalid,
-    input  wire s_axil_bready,
-    output wire [1:0] s_axil_bresp,
-    input  wire s_axil_arvalid,
-    output wire s_axil_arready,
-    input  wire [11:0] s_axil_araddr,
-    input  wire [2:0] s_axil_arprot,
-    output wire s_axil_rvalid,
-    input  wire s_axil_rready,
-    output wire [31:0] s_axil_rdata,
-    output wire [1:0] s_axil_rresp,
+    input  wire clk,  // clock, rising edge
+    input  wire rst,  // synchronous reset, active high
+    input  wire s_axil_awvalid,  // AXI4-Lite AWVALID
+    output wire s_axil_awready,  // AXI4-Lite AWREADY
+    input  wire [11:0] s_axil_awaddr,  // AXI4-Lite AWADDR
+    input  wire [2:0] s_axil_awprot,  // AXI4-Lite AWPROT
+    input  wire s_axil_wvalid,  // AXI4-Lite WVALID
+    output wire s_axil_wready,  // AXI4-Lite WREADY
+    input  wire [31:0] s_axil_wdata,  // AXI4-Lite WDATA
+    input  wire [3:0] s_axil_wstrb,  // AXI4-Lite WSTRB
+    output wire s_axil_bvalid,  // AXI4-Lite BVALID
+    input  wire s_axil_bready,  // AXI4-Lite BREADY
+    output wire [1:0] s_axil_bresp,  // AXI4-Lite BRESP
+    input  wire s_axil_arvalid,  // AXI4-Lite ARVALID
+    output wire s_axil_arready,  // AXI4-Lite ARREADY
+    input  wire [11:0] s_axil_araddr,  // AXI4-Lite ARADDR
+    input  wire [2:0] s_axil_arprot,  // AXI4-Lite ARPROT
+    output wire s_axil_rvalid,  // AXI4-Lite RVALID
+    input  wire s_axil_rready,  // AXI4-Lite RREADY
+    output wire [31:0] s_axil_rdata,  // AXI4-Lite RDATA
+    output wire [1:0] s_axil_rresp,  // AXI4-Lite RRESP
+    // word address of the external register that is read
     output wire [9:0] hwif_out_external_raddr,
-    input  wire hwif_in_external_ack,
-    input  wire [31:0] hwif_in_external_rdata,
+    input  wire hwif_in_external_ack,  // answers a read, on its clock or later
+    input  wire [31:0] hwif_in_external_rdata,  // the word; 0 without hwif_in_external_ack
+    // word address of the external register that is written
     output wire [9:0] hwif_out_external_waddr,
-    output wire [31:0] hwif_out_external_wdata,
-    output wire [3:0] hwif_out_external_wstrb,
-    input  wire [2:0] hwif_in_capabilities_locks,
-    input  wire [2:0] hwif_in_capabilities_slots,
-    input  wire hwif_in_capabilities_swaps,
-    input  wire [2:0] hwif_in_capabilities_kinds,
-    input  wire [7:0] hwif_in_capabilities_coord_w,
-    input  wire [7:0] hwif_in_capacity_bus_bytes,
-    input  wire [15:0] hwif_in_capacity_cache_kb,
-    input  wire [7:0] hwif_in_capacity_queries,
-    output wire hwif_out_control_clear,
-    output wire hwif_out_control_soft_reset,
-    output wire hwif_out_control_enable,
-    input  wire hwif_in_control_enable_hwclr,
-    input  wire hwif_in_status_write_outstanding,
-    input  wire hwif_in_status_read_outstanding,
-    input  wire hwif_in_status_invalidating,
-    input  wire hwif_in_status_record_failed,
-    input  wire hwif_in_status_query_failed,
-    input  wire hwif_in_status_idle,
-    input  wire hwif_in_status_resetting,
-    output wire hwif_out_interrupt_status_no_provider,
-    input  wire hwif_in_interrupt_status_no_provider_hwset,
-    output wire hwif_out_interrupt_status_swap_lost,
-    input  wire hwif_in_interrupt_status_swap_lost_hwset,
-    output wire hwif_out_interrupt_status_swap_error,
-    input  wire hwif_in_interrupt_status_swap_error_hwset,
-    output wire hwif_out_interrupt_status_swap_done,
-    input  wire hwif_in_interrupt_status_swap_done_hwset,
-    output wire hwif_out_interrupt_status_invalidated,
-    input  wire hwif_in_interrupt_status_invalidated_hwset,
-    output wire hwif_out_interrupt_status_reset_done,
-    input  wire hwif_in_interrupt_status_reset_done_hwset,
-    output wire hwif_out_interrupt_status_record_failed,
-    input  wire hwif_in_interrupt_status_record_failed_hwset,
-    output wire hwif_out_interrupt_status_query_failed,
-    input  wire hwif_in_interrupt_status_query_failed_hwset,
-    output wire hwif_out_interrupt_status_record,
-    input  wire hwif_in_interrupt_status_record_hwset,
-    output wire hwif_out_interrupt_status_write,
-    output wire hwif_out_interrupt_enable_no_provider,
-    output wire hwif_out_interrupt_enable_swap_lost,
-    output wire hwif_out_interrupt_enable_swap_error,
-    output wire hwif_out_interrupt_enable_swap_done,
-    output wire hwif_out_interrupt_enable_invalidated,
-    output wire hwif_out_interrupt_enable_reset_done,
-    output wire hwif_out_interrupt_enable_record_failed,
-    output wire hwif_out_interrupt_enable_query_failed,
-    output wire hwif_out_interrupt_enable_record,
-    output wire [31:0] hwif_out_step_limit_steps,
-    output wire [31:0] hwif_out_memory_limit_clocks,
-    output wire [7:0] hwif_out_open_limit_pairs,
-    output wire [2:0] hwif_out_pairs_each_pairs,
-    output wire [25:0] hwif_out_query_base_low_value,
-    output wire [31:0] hwif_out_query_base_high_value,
-    output wire [3:0] hwif_out_query_size_log2,
-    output wire [15:0] hwif_out_query_producer_count,
-    input  wire [15:0] hwif_in_query_producer_count_hwclr,
-    input  wire [15:0] hwif_in_query_consumer_count,
-    output wire [27:0] hwif_out_record_base_low_value,
-    output wire [31:0] hwif_out_record_base_high_value,
-    output wire [4:0] hwif_out_record_size_log2,
-    output wire [31:0] hwif_out_record_consumer_count,
-    input  wire [31:0] hwif_in_record_consumer_count_hwclr,
-    input  wire [31:0] hwif_in_record_producer_count,
-    output wire [4*32-1:0] hwif_out_lock_first_line,
-    output wire [4*32-1:0] hwif_out_lock_last_line,
-    output wire [31:0] hwif_out_invalidate_first_line,
-    output wire [31:0] hwif_out_invalidate_last_line,
-    output wire hwif_out_invalidate_go,
-    output wire hwif_out_swap_control_abort,
-    output wire hwif_out_swap_control_scheduler_enable,
-    output wire hwif_out_swap_command_go,
-    output wire hwif_out_swap_command_force,
-    output wire [7:0] hwif_out_swap_command_module_id,
-    output wire [7:0] hwif_out_swap_command_slot,
-    input  wire [7:0] hwif_in_swap_report_module_id,
-    input  wire [7:0] hwif_in_swap_report_slot,
-    input  wire [3:0] hwif_in_swap_report_code,
-    input  wire [15:0] hwif_in_swap_report_lost_pairs,
-    output wire [31:0] hwif_out_swap_shutdown_limit_clocks,
-    output wire [31:0] hwif_out_swap_memory_limit_clocks,
-    output wire [31:0] hwif_out_swap_minimum_batch_pairs,
-    output wire [31:0] hwif_out_swap_maximum_age_clocks,
+    output wire [31:0] hwif_out_external_wdata,  // what is written
+    output wire [3:0] hwif_out_external_wstrb,  // the bytes that are written
+    input  wire [2:0] hwif_in_capabilities_locks,  // what hardware writes; a flip-flop outside
+    input  wire [2:0] hwif_in_capabilities_slots,  // what hardware writes; a flip-flop outside
+    input  wire hwif_in_capabilities_swaps,  // what hardware writes; a flip-flop outside
+    input  wire [2:0] hwif_in_capabilities_kinds,  // what hardware writes; a flip-flop outside
+    input  wire [7:0] hwif_in_capabilities_coord_w,  // what hardware writes; a flip-flop outside
+    input  wire [7:0] hwif_in_capacity_bus_bytes,  // what hardware writes; a flip-flop outside
+    input  wire [15:0] hwif_in_capacity_cache_kb,  // what hardware writes; a flip-flop outside
+    input  wire [7:0] hwif_in_capacity_queries,  // what hardware writes; a flip-flop outside
+    output wire hwif_out_control_clear,  // the field
+    output wire hwif_out_control_soft_reset,  // the field
+    output wire hwif_out_control_enable,  // the field
+    input  wire hwif_in_control_enable_hwclr,  // 1 for a clock: clears the field
+    input  wire hwif_in_status_write_outstanding,  // what hardware writes; a flip-flop outside
+    input  wire hwif_in_status_read_outstanding,  // what hardware writes; a flip-flop outside
+    input  wire hwif_in_status_invalidating,  // what hardware writes; a flip-flop outside
+    input  wire hwif_in_status_record_failed,  // what hardware writes; a flip-flop outside
+    input  wire hwif_in_status_query_failed,  // what hardware writes; a flip-flop outside
+    input  wire hwif_in_status_idle,  // what hardware writes; a flip-flop outside
+    input  wire hwif_in_status_resetting,  // what hardware writes; a flip-flop outside
+    output wire hwif_out_interrupt_status_no_provider,  // the field
+    input  wire hwif_in_interrupt_status_no_provider_hwset,  // 1 for a clock: the event has come
+    output wire hwif_out_interrupt_status_swap_lost,  // the field
+    input  wire hwif_in_interrupt_status_swap_lost_hwset,  // 1 for a clock: the event has come
+    output wire hwif_out_interrupt_status_swap_error,  // the field
+    input  wire hwif_in_interrupt_status_swap_error_hwset,  // 1 for a clock: the event has come
+    output wire hwif_out_interrupt_status_swap_done,  // the field
+    input  wire hwif_in_interrupt_status_swap_done_hwset,  // 1 for a clock: the event has come
+    output wire hwif_out_interrupt_status_invalidated,  // the field
+    input  wire hwif_in_interrupt_status_invalidated_hwset,  // 1 for a clock: the event has come
+    output wire hwif_out_interrupt_status_reset_done,  // the field
+    input  wire hwif_in_interrupt_status_reset_done_hwset,  // 1 for a clock: the event has come
+    output wire hwif_out_interrupt_status_record_failed,  // the field
+    input  wire hwif_in_interrupt_status_record_failed_hwset,  // 1 for a clock: the event has come
+    output wire hwif_out_interrupt_status_query_failed,  // the field
+    input  wire hwif_in_interrupt_status_query_failed_hwset,  // 1 for a clock: the event has come
+    output wire hwif_out_interrupt_status_record,  // the field
+    input  wire hwif_in_interrupt_status_record_hwset,  // 1 for a clock: the event has come
+    output wire hwif_out_interrupt_status_write,  // 1 for a clock: is written
+    output wire hwif_out_interrupt_enable_no_provider,  // the field
+    output wire hwif_out_interrupt_enable_swap_lost,  // the field
+    output wire hwif_out_interrupt_enable_swap_error,  // the field
+    output wire hwif_out_interrupt_enable_swap_done,  // the field
+    output wire hwif_out_interrupt_enable_invalidated,  // the field
+    output wire hwif_out_interrupt_enable_reset_done,  // the field
+    output wire hwif_out_interrupt_enable_record_failed,  // the field
+    output wire hwif_out_interrupt_enable_query_failed,  // the field
+    output wire hwif_out_interrupt_enable_record,  // the field
+    output wire [31:0] hwif_out_step_limit_steps,  // the field
+    output wire [31:0] hwif_out_memory_limit_clocks,  // the field
+    output wire [7:0] hwif_out_open_limit_pairs,  // the field
+    output wire [2:0] hwif_out_pairs_each_pairs,  // the field
+    output wire [25:0] hwif_out_query_base_low_value,  // the field
+    output wire [31:0] hwif_out_query_base_high_value,  // the field
+    output wire [3:0] hwif_out_query_size_log2,  // the field
+    output wire [15:0] hwif_out_query_producer_count,  // the field
+    input  wire [15:0] hwif_in_query_producer_count_hwclr,  // 1 for a clock: clears the field
+    input  wire [15:0] hwif_in_query_consumer_count,  // what hardware writes; a flip-flop outside
+    output wire [27:0] hwif_out_record_base_low_value,  // the field
+    output wire [31:0] hwif_out_record_base_high_value,  // the field
+    output wire [4:0] hwif_out_record_size_log2,  // the field
+    output wire [31:0] hwif_out_record_consumer_count,  // the field
+    input  wire [31:0] hwif_in_record_consumer_count_hwclr,  // 1 for a clock: clears the field
+    input  wire [31:0] hwif_in_record_producer_count,  // what hardware writes; a flip-flop outside
+    output wire [4*32-1:0] hwif_out_lock_first_line,  // the field
+    output wire [4*32-1:0] hwif_out_lock_last_line,  // the field
+    output wire [31:0] hwif_out_invalidate_first_line,  // the field
+    output wire [31:0] hwif_out_invalidate_last_line,  // the field
+    output wire hwif_out_invalidate_go,  // the field
+    output wire hwif_out_swap_control_abort,  // the field
+    output wire hwif_out_swap_control_scheduler_enable,  // the field
+    output wire hwif_out_swap_command_go,  // the field
+    output wire hwif_out_swap_command_force,  // the field
+    output wire [7:0] hwif_out_swap_command_module_id,  // the field
+    output wire [7:0] hwif_out_swap_command_slot,  // the field
+    input  wire [7:0] hwif_in_swap_report_module_id,  // what hardware writes; a flip-flop outside
+    input  wire [7:0] hwif_in_swap_report_slot,  // what hardware writes; a flip-flop outside
+    input  wire [3:0] hwif_in_swap_report_code,  // what hardware writes; a flip-flop outside
+    input  wire [15:0] hwif_in_swap_report_lost_pairs,  // what hardware writes; a flip-flop outside
+    output wire [31:0] hwif_out_swap_shutdown_limit_clocks,  // the field
+    output wire [31:0] hwif_out_swap_memory_limit_clocks,  // the field
+    output wire [31:0] hwif_out_swap_minimum_batch_pairs,  // the field
+    output wire [31:0] hwif_out_swap_maximum_age_clocks,  // the field
+    // what hardware writes; a flip-flop outside
     input  wire [4*16-1:0] hwif_in_slot_status_outstanding,
-    input  wire [3:0] hwif_in_slot_status_decoupled,
-    input  wire [4*4-1:0] hwif_in_slot_status_phase,
+    input  wire [3:0] hwif_in_slot_status_decoupled,  // what hardware writes; a flip-flop outside
+    input  wire [4*4-1:0] hwif_in_slot_status_phase,  // what hardware writes; a flip-flop outside
+    // what hardware writes; a flip-flop outside
     input  wire [4*8-1:0] hwif_in_slot_status_module_id,
-    input  wire [31:0] hwif_in_swap_lost_value,
-    output wire hwif_out_counter_read,
-    output wire hwif_out_swaps_read,
-    output wire hwif_out_rejected_read,
-    output wire hwif_out_stalls_read,
-    output wire hwif_out_phase_clocks_read,
-    output wire hwif_out_pairs_read,
-    output wire hwif_out_bitstream_read,
-    output wire hwif_out_bitstream_write
+    input  wire [31:0] hwif_in_swap_lost_value,  // what hardware writes; a flip-flop outside
+    output wire hwif_out_counter_read,  // 1 for a clock: is read
+    output wire hwif_out_swaps_read,  // 1 for a clock: is read
+    output wire hwif_out_rejected_read,  // 1 for a clock: is read
+    output wire hwif_out_stalls_read,  // 1 for a clock: is read
+    output wire hwif_out_phase_clocks_read,  // 1 for a clock: is read
+    output wire hwif_out_pairs_read,  // 1 for a clock: is read
+    output wire hwif_out_bitstream_read,  // 1 for a clock: is read
+    output wire hwif_out_bitstream_write  // 1 for a clock: is written
 );
 
   // ---- write: address and data are taken in any order, decoded, carried out

@@ -18,81 +18,85 @@
 // later with the word on hwif_in_external_rdata, which is 0 otherwise. hwif_out_<name>_write, 1 for
 // a clock, writes those bytes of wdata whose bits in wstrb are 1 to word address waddr.
 module cchip_subsystem_regs (
-    input  wire clk,
-    input  wire rst,
-    input  wire s_axil_awvalid,
-    output wire s_axil_awready,
-    input  wire [11:0] s_axil_awaddr,
-    input  wire [2:0] s_axil_awprot,
-    input  wire s_axil_wvalid,
-    output wire s_axil_wready,
-    input  wire [31:0] s_axil_wdata,
-    input  wire [3:0] s_axil_wstrb,
-    output wire s_axil_bvalid,
-    input  wire s_axil_bready,
-    output wire [1:0] s_axil_bresp,
-    input  wire s_axil_arvalid,
-    output wire s_axil_arready,
-    input  wire [11:0] s_axil_araddr,
-    input  wire [2:0] s_axil_arprot,
-    output wire s_axil_rvalid,
-    input  wire s_axil_rready,
-    output wire [31:0] s_axil_rdata,
-    output wire [1:0] s_axil_rresp,
+    input  wire clk,  // clock, rising edge
+    input  wire rst,  // synchronous reset, active high
+    input  wire s_axil_awvalid,  // AXI4-Lite AWVALID
+    output wire s_axil_awready,  // AXI4-Lite AWREADY
+    input  wire [11:0] s_axil_awaddr,  // AXI4-Lite AWADDR
+    input  wire [2:0] s_axil_awprot,  // AXI4-Lite AWPROT
+    input  wire s_axil_wvalid,  // AXI4-Lite WVALID
+    output wire s_axil_wready,  // AXI4-Lite WREADY
+    input  wire [31:0] s_axil_wdata,  // AXI4-Lite WDATA
+    input  wire [3:0] s_axil_wstrb,  // AXI4-Lite WSTRB
+    output wire s_axil_bvalid,  // AXI4-Lite BVALID
+    input  wire s_axil_bready,  // AXI4-Lite BREADY
+    output wire [1:0] s_axil_bresp,  // AXI4-Lite BRESP
+    input  wire s_axil_arvalid,  // AXI4-Lite ARVALID
+    output wire s_axil_arready,  // AXI4-Lite ARREADY
+    input  wire [11:0] s_axil_araddr,  // AXI4-Lite ARADDR
+    input  wire [2:0] s_axil_arprot,  // AXI4-Lite ARPROT
+    output wire s_axil_rvalid,  // AXI4-Lite RVALID
+    input  wire s_axil_rready,  // AXI4-Lite RREADY
+    output wire [31:0] s_axil_rdata,  // AXI4-Lite RDATA
+    output wire [1:0] s_axil_rresp,  // AXI4-Lite RRESP
+    // word address of the external register that is read
     output wire [9:0] hwif_out_external_raddr,
-    input  wire hwif_in_external_ack,
-    input  wire [31:0] hwif_in_external_rdata,
+    input  wire hwif_in_external_ack,  // answers a read, on its clock or later
+    input  wire [31:0] hwif_in_external_rdata,  // the word; 0 without hwif_in_external_ack
+    // word address of the external register that is written
     output wire [9:0] hwif_out_external_waddr,
-    output wire [31:0] hwif_out_external_wdata,
-    output wire [3:0] hwif_out_external_wstrb,
-    input  wire [2:0] hwif_in_capabilities_kinds,
-    input  wire [7:0] hwif_in_capabilities_coord_w,
-    input  wire [7:0] hwif_in_capabilities_cfg_w,
-    input  wire [7:0] hwif_in_capabilities_slots,
-    input  wire [31:0] hwif_in_queue_depth_pairs,
-    output wire hwif_out_control_clear,
-    output wire hwif_out_control_abort,
-    output wire hwif_out_control_scheduler_enable,
-    output wire hwif_out_command_go,
-    output wire hwif_out_command_force,
-    output wire [7:0] hwif_out_command_module_id,
-    output wire [7:0] hwif_out_command_slot,
-    input  wire [7:0] hwif_in_report_module_id,
-    input  wire [7:0] hwif_in_report_slot,
-    input  wire [3:0] hwif_in_report_code,
-    input  wire [15:0] hwif_in_report_lost_pairs,
-    output wire hwif_out_interrupt_status_illegal_kind,
-    input  wire hwif_in_interrupt_status_illegal_kind_hwset,
-    output wire hwif_out_interrupt_status_no_provider,
-    input  wire hwif_in_interrupt_status_no_provider_hwset,
-    output wire hwif_out_interrupt_status_lost,
-    input  wire hwif_in_interrupt_status_lost_hwset,
-    output wire hwif_out_interrupt_status_error,
-    input  wire hwif_in_interrupt_status_error_hwset,
-    output wire hwif_out_interrupt_status_done,
-    input  wire hwif_in_interrupt_status_done_hwset,
-    output wire hwif_out_interrupt_status_write,
-    output wire hwif_out_interrupt_enable_illegal_kind,
-    output wire hwif_out_interrupt_enable_no_provider,
-    output wire hwif_out_interrupt_enable_lost,
-    output wire hwif_out_interrupt_enable_error,
-    output wire hwif_out_interrupt_enable_done,
-    output wire [31:0] hwif_out_shutdown_limit_clocks,
-    output wire [31:0] hwif_out_memory_limit_clocks,
-    output wire [31:0] hwif_out_minimum_batch_pairs,
-    output wire [31:0] hwif_out_maximum_age_clocks,
+    output wire [31:0] hwif_out_external_wdata,  // what is written
+    output wire [3:0] hwif_out_external_wstrb,  // the bytes that are written
+    input  wire [2:0] hwif_in_capabilities_kinds,  // what hardware writes; a flip-flop outside
+    input  wire [7:0] hwif_in_capabilities_coord_w,  // what hardware writes; a flip-flop outside
+    input  wire [7:0] hwif_in_capabilities_cfg_w,  // what hardware writes; a flip-flop outside
+    input  wire [7:0] hwif_in_capabilities_slots,  // what hardware writes; a flip-flop outside
+    input  wire [31:0] hwif_in_queue_depth_pairs,  // what hardware writes; a flip-flop outside
+    output wire hwif_out_control_clear,  // the field
+    output wire hwif_out_control_abort,  // the field
+    output wire hwif_out_control_scheduler_enable,  // the field
+    output wire hwif_out_command_go,  // the field
+    output wire hwif_out_command_force,  // the field
+    output wire [7:0] hwif_out_command_module_id,  // the field
+    output wire [7:0] hwif_out_command_slot,  // the field
+    input  wire [7:0] hwif_in_report_module_id,  // what hardware writes; a flip-flop outside
+    input  wire [7:0] hwif_in_report_slot,  // what hardware writes; a flip-flop outside
+    input  wire [3:0] hwif_in_report_code,  // what hardware writes; a flip-flop outside
+    input  wire [15:0] hwif_in_report_lost_pairs,  // what hardware writes; a flip-flop outside
+    output wire hwif_out_interrupt_status_illegal_kind,  // the field
+    input  wire hwif_in_interrupt_status_illegal_kind_hwset,  // 1 for a clock: the event has come
+    output wire hwif_out_interrupt_status_no_provider,  // the field
+    input  wire hwif_in_interrupt_status_no_provider_hwset,  // 1 for a clock: the event has come
+    output wire hwif_out_interrupt_status_lost,  // the field
+    input  wire hwif_in_interrupt_status_lost_hwset,  // 1 for a clock: the event has come
+    output wire hwif_out_interrupt_status_error,  // the field
+    input  wire hwif_in_interrupt_status_error_hwset,  // 1 for a clock: the event has come
+    output wire hwif_out_interrupt_status_done,  // the field
+    input  wire hwif_in_interrupt_status_done_hwset,  // 1 for a clock: the event has come
+    output wire hwif_out_interrupt_status_write,  // 1 for a clock: is written
+    output wire hwif_out_interrupt_enable_illegal_kind,  // the field
+    output wire hwif_out_interrupt_enable_no_provider,  // the field
+    output wire hwif_out_interrupt_enable_lost,  // the field
+    output wire hwif_out_interrupt_enable_error,  // the field
+    output wire hwif_out_interrupt_enable_done,  // the field
+    output wire [31:0] hwif_out_shutdown_limit_clocks,  // the field
+    output wire [31:0] hwif_out_memory_limit_clocks,  // the field
+    output wire [31:0] hwif_out_minimum_batch_pairs,  // the field
+    output wire [31:0] hwif_out_maximum_age_clocks,  // the field
+    // what hardware writes; a flip-flop outside
     input  wire [4*16-1:0] hwif_in_slot_status_outstanding,
-    input  wire [3:0] hwif_in_slot_status_decoupled,
-    input  wire [4*4-1:0] hwif_in_slot_status_phase,
+    input  wire [3:0] hwif_in_slot_status_decoupled,  // what hardware writes; a flip-flop outside
+    input  wire [4*4-1:0] hwif_in_slot_status_phase,  // what hardware writes; a flip-flop outside
+    // what hardware writes; a flip-flop outside
     input  wire [4*8-1:0] hwif_in_slot_status_module_id,
-    input  wire [31:0] hwif_in_lost_value,
-    output wire hwif_out_swaps_read,
-    output wire hwif_out_rejected_read,
-    output wire hwif_out_stalls_read,
-    output wire hwif_out_phase_clocks_read,
-    output wire hwif_out_pairs_read,
-    output wire hwif_out_bitstream_read,
-    output wire hwif_out_bitstream_write
+    input  wire [31:0] hwif_in_lost_value,  // what hardware writes; a flip-flop outside
+    output wire hwif_out_swaps_read,  // 1 for a clock: is read
+    output wire hwif_out_rejected_read,  // 1 for a clock: is read
+    output wire hwif_out_stalls_read,  // 1 for a clock: is read
+    output wire hwif_out_phase_clocks_read,  // 1 for a clock: is read
+    output wire hwif_out_pairs_read,  // 1 for a clock: is read
+    output wire hwif_out_bitstream_read,  // 1 for a clock: is read
+    output wire hwif_out_bitstream_write  // 1 for a clock: is written
 );
 
   // ---- write: address and data are taken in any order, decoded, carried out

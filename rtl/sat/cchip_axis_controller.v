@@ -22,55 +22,73 @@
 // to back too, so one accumulator serves all. Reserved modes: one idle beat, then axis class
 // ILLEGAL.
 module cchip_axis_controller #(
-    // pairs in flight
-    parameter integer CONTEXTS = 42,
-    // width of a context number, bit: at least $clog2(CONTEXTS), at least 1
+    parameter integer CONTEXTS = 42,    // pairs in flight; legal: 1..256
+    // width of a context number (bit); legal: >= 1, 2^CONTEXT_W >= CONTEXTS
     parameter integer CONTEXT_W = 6,
-    // vertices of A and of B: 3 3, 3 4 or 4 4
+    // vertices of A (vertex); legal: 3, 4; VERTS_A VERTS_B is 3 3, 3 4 or 4 4
     parameter integer VERTS_A = 3,
-    parameter integer VERTS_B = 3,
-    // 1: warped quads are decided exactly; 0: what the directed beats do not decide is left open
-    // (definite = 0)
+    parameter integer VERTS_B = 3,      // vertices of B (vertex); legal: VERTS_A..4
+    // 1: warped quads are decided exactly; 0: what the directed beats do not decide of a warped
+    // quad is left open (definite = 0); legal: 0, 1
     parameter integer WARPED_EXACT = 1
 ) (
-    input  wire                                clk,
-    input  wire                                rst,
-    // pairs
+    input  wire                                clk,                      // clock, rising edge
+    input  wire                                rst,  // synchronous reset, active high
+    // ---- pairs
+    // there is a pair; it is always taken, from the third clock after rst on
     input  wire                                s_pair_valid,
+    // 0 EXHAUSTIVE, 1 DIRECTED, 2 and 3 reserved
     input  wire [           `CCHIP_MODE_W-1:0] s_pair_mode,
-    // one clock after s_pair_valid
+    // its tag, returned with the result; one clock after s_pair_valid
     input  wire [            `CCHIP_TAG_W-1:0] s_pair_tag,
-    // one clock after s_pair_valid
+    // eta, error bound of the pair in grid steps; one clock after s_pair_valid
     input  wire [            `CCHIP_ERR_W-1:0] s_pair_err,
+    // context under which the owner stores the operands if s_pair_valid = 1 on this clock
     output wire [               CONTEXT_W-1:0] m_load_context,
-    // beats to the pipeline and what comes back
-    output wire                                m_beat_valid,
-    output wire [               CONTEXT_W-1:0] m_beat_context,
+    // ---- beats to the pipeline and what comes back
+    output wire                                m_beat_valid,             // there is a beat
+    output wire [               CONTEXT_W-1:0] m_beat_context,           // whose operands it needs
+    // axis code {class[2:0], k[2:0], l[2:0]}
     output wire [      `CCHIP_AXIS_CODE_W-1:0] m_beat_code,
-    output wire                                m_beat_allow_above,       // one clock after the beat
+    // the other primitive may be found separated above the own one; one clock after the beat
+    output wire                                m_beat_allow_above,
+    // below; one clock after the beat
     output wire                                m_beat_allow_below,
+    // {context, programme state}; comes back with the verdict
     output wire [CONTEXT_W+`CCHIP_STATE_W-1:0] m_beat_user,
+    // there is a verdict; it is always taken
     input  wire                                s_verdict_valid,
-    input  wire [CONTEXT_W+`CCHIP_STATE_W-1:0] s_verdict_user,
-    input  wire                                s_verdict_separated,
+    input  wire [CONTEXT_W+`CCHIP_STATE_W-1:0] s_verdict_user,           // m_beat_user of its beat
+    input  wire                                s_verdict_separated,      // the axis separates
+    // the unrounded primitives too
     input  wire                                s_verdict_certain_gap,
+    // bit i: projected point p_i < 0
     input  wire [         VERTS_A+VERTS_B-4:0] s_verdict_negative,
-    input  wire [         VERTS_A+VERTS_B-4:0] s_verdict_zero,
+    input  wire [         VERTS_A+VERTS_B-4:0] s_verdict_zero,           // bit i: p_i = 0
+    // the sign of point VERTS_A - 2 is certain
     input  wire                                s_verdict_certain,
+    // on a normal: all sides are certain
     input  wire                                s_verdict_clear,
+    // the primitives overlap on the axis by more than the error, both ways
     input  wire                                s_verdict_deep,
+    // components of the axis: < 0
     input  wire [                         2:0] s_verdict_axis_negative,
-    input  wire [                         2:0] s_verdict_axis_zero,
+    input  wire [                         2:0] s_verdict_axis_zero,  // components of the axis: = 0
+    // component of the largest absolute value
     input  wire [                         1:0] s_verdict_axis_largest,
+    // boxes disjoint in component l of the code
     input  wire                                s_verdict_box_separated,
-    input  wire                                s_verdict_box_certain,
-    // results
-    output wire                                m_result_valid,
-    output wire [            `CCHIP_TAG_W-1:0] m_result_tag,
-    output wire                                m_result_hit,
-    output wire                                m_result_grid,
+    input  wire                                s_verdict_box_certain,    // by more than E
+    // ---- results
+    output wire                                m_result_valid,  // there is a result, for one clock
+    output wire [            `CCHIP_TAG_W-1:0] m_result_tag,             // tag of the pair
+    output wire                                m_result_hit,             // grid or not definite
+    output wire                                m_result_grid,            // no axis separates
+    // grid is proven for the unrounded primitives
     output wire                                m_result_definite,
+    // witness: code of the separating axis, 0 if none, class 7 for a reserved mode
     output wire [      `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
+    // beats of the pair, 0 for a reserved mode
     output wire [          `CCHIP_BEATS_W-1:0] m_result_beats
 );
 

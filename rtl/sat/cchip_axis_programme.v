@@ -26,38 +26,43 @@
 // INFO_DEGENERATE, INFO_TETRAHEDRON.
 // The verdicts of an EXHAUSTIVE pair come on consecutive clocks.
 module cchip_axis_programme #(
-    // vertices of A and of B: 3 3, 3 4 or 4 4
+    // vertices of A (vertex); legal: 3, 4; VERTS_A VERTS_B is 3 3, 3 4 or 4 4
     parameter integer VERTS_A = 3,
-    parameter integer VERTS_B = 3,
-    // 0: warped quads skip TETRAHEDRON and are left open
+    parameter integer VERTS_B = 3,      // vertices of B (vertex); legal: VERTS_A..4
+    // 1: warped quads are decided exactly; 0: no programme TETRAHEDRON for warped quads; what the
+    // directed beats do not decide of one is left open; legal: 0, 1
     parameter integer WARPED_EXACT = 1
 ) (
-    input  wire                          clk,
+    input  wire                          clk,              // clock, rising edge
+    // synchronous reset, active high: no verdict of before has an effect
     input  wire                          rst,
-    input  wire                          s_valid,
-    input  wire [    `CCHIP_STATE_W-1:0] s_state,
-    input  wire                          s_separated,
-    input  wire                          s_certain_gap,
-    input  wire [   VERTS_A+VERTS_B-4:0] s_negative,
-    input  wire [   VERTS_A+VERTS_B-4:0] s_zero,
-    input  wire                          s_certain,        // the sign of point VERTS_A - 2
-    // see cchip_sat_compare: on a normal, all sides are certain
+    input  wire                          s_valid,          // there is a verdict
+    input  wire [    `CCHIP_STATE_W-1:0] s_state,          // programme state of its beat, see below
+    input  wire                          s_separated,  // the intervals of all vertices are disjoint
+    input  wire                          s_certain_gap,    // for the unrounded primitives too
+    input  wire [   VERTS_A+VERTS_B-4:0] s_negative,       // bit i: projected point p_i < 0
+    input  wire [   VERTS_A+VERTS_B-4:0] s_zero,           // bit i: p_i = 0
+    // the sign of point VERTS_A - 2 (W_l on a cross axis) is that of the unrounded vertices
+    input  wire                          s_certain,
+    // on a normal: all sides are certain (cchip_sat_compare)
     input  wire                          s_clear,
-    input  wire                          s_deep,           // see cchip_sat_compare
-    input  wire [                   2:0] s_axis_negative,
-    input  wire [                   2:0] s_axis_zero,
-    input  wire [                   1:0] s_axis_largest,
+    // the primitives overlap on the axis by more than the error, both ways
+    input  wire                          s_deep,
+    input  wire [                   2:0] s_axis_negative,  // components of the axis: < 0
+    input  wire [                   2:0] s_axis_zero,      // components of the axis: = 0
+    input  wire [                   1:0] s_axis_largest,  // component of the largest absolute value
+    // boxes disjoint in component l of the beat's code
     input  wire                          s_box_separated,
-    input  wire                          s_box_certain,
-    output wire                          m_outcome,        // the pair is decided
+    input  wire                          s_box_certain,    // by more than E
+    output wire                          m_outcome,        // the pair is decided by this verdict
     output wire                          m_grid,           // no axis separates
-    output wire                          m_certain,        // holds for the unrounded primitives
+    output wire                          m_certain,  // that holds for the unrounded primitives
     output wire                          m_open,           // left undecided (WARPED_EXACT = 0)
-    output wire                          m_illegal,
-    output wire [`CCHIP_AXIS_CODE_W-1:0] m_witness,
-    output wire [    `CCHIP_BEATS_W-1:0] m_beats,
-    output wire                          m_proceed,        // m_state is the pair's next beat
-    output wire [    `CCHIP_STATE_W-1:0] m_state
+    output wire                          m_illegal,        // reserved mode
+    output wire [`CCHIP_AXIS_CODE_W-1:0] m_witness,        // axis code of the result
+    output wire [    `CCHIP_BEATS_W-1:0] m_beats,  // beats issued for the pair, this one included
+    output wire                          m_proceed,        // the pair continues with m_state
+    output wire [    `CCHIP_STATE_W-1:0] m_state           // state of its next beat
 );
 
   reg m_outcome_q;

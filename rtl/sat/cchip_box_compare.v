@@ -7,20 +7,34 @@
 //   numbers      signed COORD_W-bit coordinates; no multiplier
 //   reset        none (data only)
 // Only the degenerate programme uses it: primitives on one line have no other separating axis.
+//   parameters   Checked in cchip_primtest and cchip_sat_select, not here.
+//   timing       Clocks 1 to 4: component; comparisons of the first two and the last two vertices
+//                of each primitive; lower and higher of each couple; comparisons of the couples.
+//                Clocks 5 to 8: minimum and maximum of all; gaps; gaps against E; verdict.
+//   numbers      x < y is the sign of x - y with one bit more. The gaps are differences of two
+//                coordinates less 1, COORD_W + 1 bits: the sign tells whether there is a gap, and
+//                gap > E is gap - 1 >= E. A coordinate is an axis with |L|_1 = 1, so this is the
+//                definite no (docs/develop/architecture.md#a-definite-no) of any other axis.
+//   why          It rides on the beats e_0 x f_l of the degenerate programme, component l, and runs
+//                beside the four macro stages. So it costs no beat and no multiplier; a unit vector
+//                as an axis would have needed one more axis class in stages 1 and 2, and three
+//                beats. The stages take longer, so comparison and multiplexer get a clock each.
 module cchip_box_compare #(
-    // width of a coordinate, bit
-    parameter integer COORD_W = 16,
-    // vertices of A and of B
-    parameter integer VERTS_A = 3,
-    parameter integer VERTS_B = 3
+    parameter integer COORD_W = 16,  // width of a coordinate (bit); legal: 4..20
+    parameter integer VERTS_A = 3,   // vertices of A (vertex); legal: 3, 4
+    parameter integer VERTS_B = 3    // vertices of B (vertex); legal: 3, 4
 ) (
-    input  wire                            clk,
-    input  wire [   3*VERTS_A*COORD_W-1:0] s_a,            // vertex 0 in the low bits, x lowest
-    input  wire [   3*VERTS_B*COORD_W-1:0] s_b,
-    input  wire [                     1:0] s_component,    // 0 x, 1 y, 2 z; 3 like 0
-    input  wire [`CCHIP_ERROR_SHIFT_W-1:0] s_error_shift,  // eta <= 2^s_error_shift
+    input  wire                            clk,            // clock, rising edge
+    // A, vertex 0 in the low bits; of a vertex x lowest
+    input  wire [   3*VERTS_A*COORD_W-1:0] s_a,
+    input  wire [   3*VERTS_B*COORD_W-1:0] s_b,            // B likewise
+    input  wire [                     1:0] s_component,    // 0 x, 1 y, 2 z; 3 is taken as 0
+    // E = 2^s_error_shift; eta <= 2^s_error_shift
+    input  wire [`CCHIP_ERROR_SHIFT_W-1:0] s_error_shift,
+    // the boxes have no common value of this component
     output wire                            m_separated,
-    output wire                            m_certain_gap   // the gap exceeds 2^s_error_shift
+    // the gap between them exceeds E, so the unrounded boxes are disjoint too
+    output wire                            m_certain_gap
 );
 
   reg m_separated_q;

@@ -18,22 +18,22 @@
 // cofactors from two products of entries; seven products of an entry and a cofactor. A chain of
 // registers collects the values of a stage, and a bank holds them for the next.
 module cchip_point_axes #(
-    // width of a coordinate, bit
+    // width of a signed coordinate, and of the unsigned radius (bit); legal: 4..20
     parameter integer COORD_W = 16,
-    // width of what travels along, bit
-    parameter integer USER_W = 18
+    parameter integer USER_W = 18    // width of what travels along with a pair (bit); legal: >= 1
 ) (
-    input  wire                 clk,
-    input  wire                 rst,
-    input  wire                 s_pair_valid,
-    output wire                 s_pair_ready,
-    input  wire [3*COORD_W-1:0] s_pair_point,
-    input  wire [9*COORD_W-1:0] s_pair_triangle,  // vertex 0 in the low bits
-    input  wire [  COORD_W-1:0] s_pair_radius,    // unsigned
-    input  wire [   USER_W-1:0] s_pair_user,
-    output wire                 m_verdict_valid,
+    input  wire                 clk,                  // clock, rising edge
+    input  wire                 rst,                  // synchronous reset, active high
+    input  wire                 s_pair_valid,         // a pair is offered
+    output wire                 s_pair_ready,  // the pair is accepted if s_pair_valid = 1 as well
+    input  wire [3*COORD_W-1:0] s_pair_point,         // centre of the sphere, x lowest
+    input  wire [9*COORD_W-1:0] s_pair_triangle,      // vertex i in bits [3*COORD_W*i +: 3*COORD_W]
+    input  wire [  COORD_W-1:0] s_pair_radius,        // radius, unsigned
+    input  wire [   USER_W-1:0] s_pair_user,          // returned with the verdict
+    output wire                 m_verdict_valid,  // a verdict, for one clock; it cannot be stopped
+    // bit 0: the face's normal separates, 1..3: edge 0, 1, 2, 4..6: vertex 0, 1, 2
     output wire [          6:0] m_verdict_separated,
-    output wire [   USER_W-1:0] m_verdict_user
+    output wire [   USER_W-1:0] m_verdict_user        // of the pair
 );
 
   localparam integer D_W = `CCHIP_EDGE_W(COORD_W);

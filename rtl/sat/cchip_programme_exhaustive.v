@@ -7,35 +7,46 @@
 //   throughput   one verdict per clock
 //   cuts         every path from an input
 //   reset        m_valid; what is remembered is overwritten by the first verdicts of the next pair
+//   about        Part of cchip_axis_programme.
+//   timing       Latency 1 clock, then two levels of logic. The verdicts of a pair come on
+//                consecutive clocks, nA first; another pair may follow at once.
+//   why          The pipeline issues all axes of an EXHAUSTIVE pair back to back, so the state that
+//                travels with a beat cannot carry what earlier beats found. One set of registers
+//                does, because such a pair's verdicts come back to back, too. Its loop from one
+//                verdict to the next is a selection; everything else is computed a clock before.
 module cchip_programme_exhaustive #(
-    // 1: a hit of a warped quad that is not certain continues with TETRAHEDRON, 0: never
+    // 1: a warped quad whose hit is not certain continues with programme TETRAHEDRON; legal: 0, 1
     parameter integer TETRAHEDRON = 0
 ) (
-    input  wire                          clk,
-    input  wire                          rst,
-    input  wire                          s_valid,
-    input  wire                          s_normal_a,       // the verdict is that on nA, the first
-    input  wire                          s_normal_b,
-    input  wire                          s_last,           // the pair has no other axis
-    input  wire [`CCHIP_AXIS_CODE_W-1:0] s_code,           // its axis
-    input  wire                          s_separated,
-    input  wire                          s_certain_gap,
-    // the sign of a cross axis: certain, negative
+    input  wire                          clk,               // clock, rising edge
+    input  wire                          rst,  // synchronous reset, active high: clears m_valid
+    input  wire                          s_valid,  // there is a verdict of an EXHAUSTIVE pair
+    input  wire                          s_normal_a,  // it is that on nA, the first of the pair
+    input  wire                          s_normal_b,        // it is that on nB
+    input  wire                          s_last,            // it is the last one
+    input  wire [`CCHIP_AXIS_CODE_W-1:0] s_code,            // axis code of its beat
+    input  wire                          s_separated,  // the intervals of all vertices are disjoint
+    input  wire                          s_certain_gap,     // for the unrounded primitives too
+    // the sign of the projection of W_l on a cross axis is that of the unrounded vertices
     input  wire                          s_sign_certain,
-    input  wire                          s_sign_negative,
-    // the axis overlaps by more than the error both ways, or is zero; eta is 1..14
+    input  wire                          s_sign_negative,   // it is negative
+    // eta is 1..14, and the primitives overlap on the axis by more than the error, both ways, or
+    // the axis is zero
     input  wire                          s_deep,
-    // with nB: see cchip_programme_plan
+    // with nB: m_certain of cchip_programme_plan
     input  wire                          s_certain_sides,
-    input  wire [     `CCHIP_PLAN_W-1:0] s_plan,
-    output wire                          m_valid,
-    output wire                          m_outcome,        // the pair is decided
-    output wire                          m_proceed,        // it continues with m_plan
-    output wire                          m_separated,
-    output wire [`CCHIP_AXIS_CODE_W-1:0] m_witness,        // first axis that separates, 0: none
+    input  wire [     `CCHIP_PLAN_W-1:0] s_plan,            // with nB: m_plan of the same
+    output wire                          m_valid,           // the outputs belong to a verdict
+    output wire                          m_outcome,         // the pair is decided by it
+    output wire                          m_proceed,         // the pair continues with m_plan
+    output wire                          m_separated,       // an axis separates
+    output wire [`CCHIP_AXIS_CODE_W-1:0] m_witness,  // axis code of the first that does; 0: none
+    // the answer holds for the unrounded primitives
     output wire                          m_certain,
-    output wire                          m_to_tetrahedron, // or with TETRAHEDRON
-    output wire                          m_deep,           // every axis so far
+    // with m_proceed: not m_plan but TETRAHEDRON
+    output wire                          m_to_tetrahedron,
+    output wire                          m_deep,            // all axes so far were deep
+    // what the normals lead to, record PLAN, docs/hardware/definitions.md#record-plan
     output wire [     `CCHIP_PLAN_W-1:0] m_plan
 );
 

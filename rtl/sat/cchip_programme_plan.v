@@ -9,26 +9,40 @@
 //   reset        none: outputs mean something one clock after a verdict on a normal only
 // The verdict on nA gives m_info, which the pair's state carries to nB. The verdict on nB gives
 // m_plan. For an EXHAUSTIVE pair, nB must follow nA at once.
+//   about        What the verdicts on both normals of a pair lead to, if neither separates: the
+//                first state of the next programme. Part of cchip_axis_programme, whose datasheet
+//                has the rules.
+//   parameters   Checked in cchip_sat_select and cchip_axis_controller, not here.
+//   timing       Latency 1 clock from s_*, then the logic that chooses the plan: about three levels
+//                of LUTs, behind which cchip_axis_programme has its next register.
+//   why          The state carries m_info from nA to nB, so a pair may wait between the two for any
+//                time and others may pass. An EXHAUSTIVE pair carries nothing; its nB follows nA at
+//                once, so what nA left in the registers is used.
 module cchip_programme_plan #(
-    // vertices of A and of B: 3 3, 3 4 or 4 4
+    // vertices of A (vertex); legal: 3, 4; VERTS_A VERTS_B is 3 3, 3 4 or 4 4
     parameter integer VERTS_A = 3,
-    parameter integer VERTS_B = 3,
-    // 0: warped quads skip TETRAHEDRON and are left open
+    parameter integer VERTS_B = 3,      // vertices of B (vertex); legal: VERTS_A..4
+    // 1: warped quads are decided exactly; 0: no programme TETRAHEDRON; a warped quad makes the
+    // plan open; legal: 0, 1
     parameter integer WARPED_EXACT = 1
 ) (
-    input  wire                        clk,
+    input  wire                        clk,              // clock, rising edge
+    // programme state of the verdict's beat, record STATE,
+    // docs/hardware/definitions.md#record-state
     input  wire [  `CCHIP_STATE_W-1:0] s_state,
-    input  wire [ VERTS_A+VERTS_B-4:0] s_negative,
-    input  wire [ VERTS_A+VERTS_B-4:0] s_zero,
-    input  wire                        s_clear,
-    input  wire [                 2:0] s_axis_negative,
-    input  wire [                 2:0] s_axis_zero,
-    input  wire [                 1:0] s_axis_largest,
+    input  wire [ VERTS_A+VERTS_B-4:0] s_negative,       // bit i: projected point p_i < 0
+    input  wire [ VERTS_A+VERTS_B-4:0] s_zero,           // bit i: p_i = 0
+    input  wire                        s_clear,          // all sides are certain
+    input  wire [                 2:0] s_axis_negative,  // components of the normal: < 0
+    input  wire [                 2:0] s_axis_zero,      // components of the normal: = 0
+    input  wire [                 1:0] s_axis_largest,   // component of the largest absolute value
+    // of a verdict on nA: record INFO_NORMALS, docs/hardware/definitions.md#record-info_normals;
     // nA: record INFO_NORMALS; all its sides are certain
     output wire [`CCHIP_INFO_W-1:0]    m_info,
-    output wire                        m_clear,
-    // nB: all sides of both normals are certain; record PLAN
+    output wire                        m_clear,          // of a verdict on nA: s_clear
+    // of a verdict on nB: all sides of both normals are certain
     output wire                        m_certain,
+    // of a verdict on nB: record PLAN, docs/hardware/definitions.md#record-plan
     output wire [   `CCHIP_PLAN_W-1:0] m_plan
 );
 

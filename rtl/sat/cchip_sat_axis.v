@@ -14,18 +14,18 @@
 // SUBSTAGES leaves over CCHIP_AXIS_SUBSTAGES_MIN: first the product register, then the operand
 // register, then results.
 module cchip_sat_axis #(
-    // width of a coordinate, bit
-    parameter integer COORD_W = 16,
-    // registers from input to output, clocks
+    parameter integer COORD_W = 16,   // width of a coordinate (bit); legal: 4..20
+    // registers from input to output (clock); legal: >= CCHIP_AXIS_SUBSTAGES_MIN(COORD_W), >= 5
     parameter integer SUBSTAGES = 10
 ) (
-    input  wire                                clk,
-    input  wire [               3*COORD_W-1:0] s_e_from,
-    input  wire [               3*COORD_W-1:0] s_e_to,
-    input  wire [               3*COORD_W-1:0] s_f_from,
-    input  wire [               3*COORD_W-1:0] s_f_to,
+    input  wire                                clk,         // clock, rising edge
+    input  wire [               3*COORD_W-1:0] s_e_from,    // start of edge e, x in the low bits
+    input  wire [               3*COORD_W-1:0] s_e_to,      // end of edge e
+    input  wire [               3*COORD_W-1:0] s_f_from,    // start of edge f
+    input  wire [               3*COORD_W-1:0] s_f_to,      // end of edge f
+    // axis, x in the low bits, components signed, 2 COORD_W + 2 bits each
     output wire [3*`CCHIP_AXIS_W(COORD_W)-1:0] m_axis,
-    output wire [  `CCHIP_NORM_W(COORD_W)-1:0] m_edge_norm
+    output wire [  `CCHIP_NORM_W(COORD_W)-1:0] m_edge_norm  // |e|_1 + |f|_1, unsigned
 );
 
   localparam integer EDGE_W = `CCHIP_EDGE_W(COORD_W);

@@ -15,17 +15,21 @@
 //   numbers      unsigned, CCHIP_BOUND_W(COORD_W) bits, no overflow
 //   reset        none (data only)
 module cchip_sat_bound #(
-    // width of a coordinate, bit
-    parameter integer COORD_W = 16,
-    // registers of the projections beside this, clocks, >= 5
+    parameter integer COORD_W = 16,   // width of a coordinate (bit); legal: 4..20
+    // registers of the projections beside this (clock); legal: >= 5
     parameter integer SUBSTAGES = 10
 ) (
-    input  wire                                clk,
+    input  wire                                clk,            // clock, rising edge
+    // axis L, x in the low bits, components signed
     input  wire [3*`CCHIP_AXIS_W(COORD_W)-1:0] s_axis,
+    // |a|_1 + |b|_1 of the edges with L = a x b
     input  wire [  `CCHIP_NORM_W(COORD_W)-1:0] s_edge_norm,
-    input  wire [    `CCHIP_ERROR_SHIFT_W-1:0] s_error_shift,
-    input  wire [3*`CCHIP_EDGE_W(COORD_W)-1:0] s_difference,   // c, one clock after s_axis
+    input  wire [    `CCHIP_ERROR_SHIFT_W-1:0] s_error_shift,  // E = 2^s_error_shift >= eta, 0..4
+    // c, the point whose sign is asked, minus reference; x in the low bits, one clock after s_axis
+    input  wire [3*`CCHIP_EDGE_W(COORD_W)-1:0] s_difference,
+    // bound on the error of its projection, unsigned
     output wire [ `CCHIP_BOUND_W(COORD_W)-1:0] m_sign_bound,
+    // bound on the error of the difference of two projections onto the fixed axis L, unsigned
     output wire [ `CCHIP_BOUND_W(COORD_W)-1:0] m_gap_bound
 );
 

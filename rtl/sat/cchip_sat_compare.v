@@ -14,34 +14,39 @@
 // bound, and each point of the other set is on one side of the whole own set. m_deep: some
 // difference exceeds the gap bound, and some is below its negative.
 module cchip_sat_compare #(
-    // width of a projection, bit
+    // width of a projection, CCHIP_PROJ_W(COORD_W) in the pipeline (bit); legal: >= 2
     parameter integer PROJ_W = 51,
-    // width of a bound, bit
+    // width of a bound, CCHIP_BOUND_W(COORD_W) in the pipeline (bit); legal: >= 1
     parameter integer BOUND_W = 43,
-    // point slots, 3..5
-    parameter integer POINTS = 3,
-    // the first slots that can hold own points: 1 or 2; the sign of the slot behind them can be
-    // certain
+    parameter integer POINTS = 3,    // point slots; legal: 3..5
+    // the first slots, which can hold own points; the sign of the slot behind them can be certain;
+    // legal: 1, 2
     parameter integer OWN = 1
 ) (
-    input  wire                     clk,
-    // slot 0, 1 holds an own point; [1] only with [0] and OWN = 2
+    input  wire                     clk,            // clock, rising edge
+    // bit i: slot i holds an own point; bit 1 only with bit 0 and OWN = 2
     input  wire [              1:0] s_own,
-    // the other set may be separated above the own one
+    // the other set may be found separated above the own one
     input  wire                     s_allow_above,
-    input  wire                     s_allow_below,
-    input  wire [POINTS*PROJ_W-1:0] s_projection,   // p0 in the low bits
-    input  wire [      BOUND_W-1:0] s_sign_bound,   // of slot OWN; two clocks after s_projection
-    input  wire [      BOUND_W-1:0] s_gap_bound,    // two clocks after s_projection
+    input  wire                     s_allow_below,  // below
+    // projections relative to the reference, p0 in the low bits, signed
+    input  wire [POINTS*PROJ_W-1:0] s_projection,
+    // bound on the error of slot OWN, unsigned, CCHIP_BOUND_LAG = 2 clocks after s_projection
+    input  wire [      BOUND_W-1:0] s_sign_bound,
+    // bound on the error of a difference on the fixed axis, unsigned, at the same time
+    input  wire [      BOUND_W-1:0] s_gap_bound,
+    // the intervals have no common point, on an allowed side
     output wire                     m_separated,
-    output wire                     m_certain_gap,  // separated for the unrounded primitives
-    output wire [       POINTS-1:0] m_negative,     // p_i < 0
-    output wire [       POINTS-1:0] m_zero,         // p_i = 0
-    // the sign of p_OWN is that of the unrounded vertices
+    // neither have those of the unrounded primitives
+    output wire                     m_certain_gap,
+    output wire [       POINTS-1:0] m_negative,     // bit i: p_i < 0
+    output wire [       POINTS-1:0] m_zero,         // bit i: p_i = 0
+    // |p| of slot OWN exceeds its bound; the sign of p_OWN is that of the unrounded vertices
     output wire                     m_certain,
-    // every other point lies certainly beyond all own points, on either side
+    // every point of the other set lies beyond all own points, on either side, by more than the gap
+    // bound
     output wire                     m_clear,
-    // the sets overlap by more than the gap bound, both ways
+    // some difference between the sets exceeds the gap bound, and some is below its negative
     output wire                     m_deep
 );
 

@@ -11,48 +11,54 @@
 //   reset        valid bits; data on its way is lost
 // s_beat_user travels with the beat and comes back as m_verdict_user.
 module cchip_sat_pipeline #(
-    // width of a coordinate, bit
-    parameter integer COORD_W = 16,
-    // registers in each of the stages axis and project, clocks
+    parameter integer COORD_W = 16,             // width of a coordinate (bit); legal: 4..20
+    // registers in each of the stages axis and project (clock); legal: >=
+    // CCHIP_SUBSTAGES_MIN(COORD_W)
     parameter integer SUBSTAGES = 10,
-    // 0 relative, 1 absolute projection (see cchip_sat_project)
-    parameter integer ABSOLUTE_PROJECTION = 0,
-    // vertices of A and of B: 3 3, 3 4 or 4 4
+    parameter integer ABSOLUTE_PROJECTION = 0,  // see cchip_sat_project; legal: 0, 1
+    // vertices of A (vertex); legal: 3, 4; VERTS_A VERTS_B is 3 3, 3 4 or 4 4
     parameter integer VERTS_A = 3,
-    parameter integer VERTS_B = 3,
-    // width of the user field, bit
-    parameter integer USER_W = 8
+    parameter integer VERTS_B = 3,              // vertices of B (vertex); legal: VERTS_A..4
+    parameter integer USER_W = 8                // width of the user field (bit); legal: >= 1
 ) (
-    input  wire                            clk,
+    input  wire                            clk,                      // clock, rising edge
+    // synchronous reset, active high: no beat of before comes out
     input  wire                            rst,
-    input  wire                            s_beat_valid,
-    input  wire [  `CCHIP_AXIS_CODE_W-1:0] s_beat_code,              // {class, k, l}
-    // one clock after the beat; see cchip_sat_compare
+    input  wire                            s_beat_valid,  // there is a beat; it is always taken
+    input  wire [  `CCHIP_AXIS_CODE_W-1:0] s_beat_code,  // axis code {class[2:0], k[2:0], l[2:0]}
+    // the other primitive may be found separated above the own one; one clock after the beat
     input  wire                            s_beat_allow_above,
-    input  wire                            s_beat_allow_below,
-    input  wire [              USER_W-1:0] s_beat_user,
-    // after the beat by CCHIP_RAM_LATENCY: eta <= 2^this, 0..4
+    input  wire                            s_beat_allow_below,  // below; one clock after the beat
+    input  wire [              USER_W-1:0] s_beat_user,  // anything; comes back with the verdict
+    // E = 2^s_operand_error_shift >= eta, 0..4; CCHIP_RAM_LATENCY clocks after the beat
     input  wire [`CCHIP_ERROR_SHIFT_W-1:0] s_operand_error_shift,
-    input  wire [   3*VERTS_A*COORD_W-1:0] s_operand_a,              // vertex 0 in the low bits
-    input  wire [   3*VERTS_B*COORD_W-1:0] s_operand_b,
-    output wire                            m_verdict_valid,
-    output wire                            m_verdict_separated,      // intervals disjoint
+    // A at the same time, vertex 0 in the low bits; of a vertex x lowest
+    input  wire [   3*VERTS_A*COORD_W-1:0] s_operand_a,
+    input  wire [   3*VERTS_B*COORD_W-1:0] s_operand_b,              // B likewise
+    output wire                            m_verdict_valid,  // the outputs below belong to a beat
+    // the intervals on this axis are disjoint
+    output wire                            m_verdict_separated,
     // for the unrounded primitives too
     output wire                            m_verdict_certain_gap,
-    output wire [     VERTS_A+VERTS_B-4:0] m_verdict_negative,       // projected points: < 0
-    output wire [     VERTS_A+VERTS_B-4:0] m_verdict_zero,           // = 0
-    // the sign of point VERTS_A - 2 is certain
+    // bit i: projected point p_i < 0, points as chosen by cchip_sat_select
+    output wire [     VERTS_A+VERTS_B-4:0] m_verdict_negative,
+    output wire [     VERTS_A+VERTS_B-4:0] m_verdict_zero,           // bit i: p_i = 0
+    // the sign of point VERTS_A - 2 is certain: on a cross axis that of W_l
     output wire                            m_verdict_certain,
-    output wire                            m_verdict_clear,          // see cchip_sat_compare
+    // every point of the other is certainly beyond the whole own set: see cchip_sat_compare
+    output wire                            m_verdict_clear,
+    // the primitives overlap on the axis by more than the error, both ways; without meaning on an
+    // in-plane axis
     output wire                            m_verdict_deep,
-    output wire [                     2:0] m_verdict_axis_negative,  // components of the axis: < 0
-    output wire [                     2:0] m_verdict_axis_zero,      // = 0
+    // component of the axis < 0, x in bit 0
+    output wire [                     2:0] m_verdict_axis_negative,
+    output wire [                     2:0] m_verdict_axis_zero,      // component = 0
     // component of the largest absolute value
     output wire [                     1:0] m_verdict_axis_largest,
     // boxes disjoint in component l of the code
     output wire                            m_verdict_box_separated,
-    output wire                            m_verdict_box_certain,    // by more than 2^error_shift
-    output wire [              USER_W-1:0] m_verdict_user
+    output wire                            m_verdict_box_certain,    // by more than E
+    output wire [              USER_W-1:0] m_verdict_user            // s_beat_user of the beat
 );
 
   localparam integer POINT_W = 3 * COORD_W;

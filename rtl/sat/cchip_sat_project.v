@@ -21,32 +21,36 @@
 // first the product register, then the operand register, then results. The error bounds run beside
 // (cchip_sat_bound).
 module cchip_sat_project #(
-    // width of a coordinate, bit
-    parameter integer COORD_W = 16,
-    // registers from input to output, clocks
+    parameter integer COORD_W = 16,             // width of a coordinate (bit); legal: 4..20
+    // registers from input to output (clock); legal: >= CCHIP_PROJECT_SUBSTAGES_MIN(COORD_W)
     parameter integer SUBSTAGES = 10,
-    // 0: relative to the reference before, 1: after the multiplication
+    // 0: subtract the reference before the multiplication, 1: after it; legal: 0, 1
     parameter integer ABSOLUTE_PROJECTION = 0,
-    // points to project
-    parameter integer POINTS = 3,
-    // the one whose sign may have to be certain
+    parameter integer POINTS = 3,               // points to project; legal: 3..5
+    // number of the point whose sign may have to be certain; legal: 0..POINTS - 1
     parameter integer SIGN = 1
 ) (
-    input  wire                                     clk,
+    input  wire                                     clk,              // clock, rising edge
+    // axis, x in the low bits, components signed, 2 COORD_W + 2 bits each
     input  wire [     3*`CCHIP_AXIS_W(COORD_W)-1:0] s_axis,
-    input  wire [       `CCHIP_NORM_W(COORD_W)-1:0] s_edge_norm,      // |e|_1 + |f|_1
-    // eta <= 2^s_error_shift, 0..4
+    input  wire [       `CCHIP_NORM_W(COORD_W)-1:0] s_edge_norm,      // |e|_1 + |f|_1 of its edges
+    // E = 2^s_error_shift >= eta, 0..4
     input  wire [         `CCHIP_ERROR_SHIFT_W-1:0] s_error_shift,
+    // point that projects onto 0, x in the low bits
     input  wire [                    3*COORD_W-1:0] s_reference,
-    input  wire [             3*POINTS*COORD_W-1:0] s_points,         // p0 in the low bits
-    output wire [POINTS*`CCHIP_PROJ_W(COORD_W)-1:0] m_projection,     // p0 in the low bits
-    // of the error of projection SIGN
+    input  wire [             3*POINTS*COORD_W-1:0] s_points,         // points, p0 in the low bits
+    // projections, p0 in the low bits, signed, 3 COORD_W + 3 bits each
+    output wire [POINTS*`CCHIP_PROJ_W(COORD_W)-1:0] m_projection,
+    // bound on the error of projection SIGN, unsigned, CCHIP_BOUND_LAG clocks after it
     output wire [      `CCHIP_BOUND_W(COORD_W)-1:0] m_sign_bound,
-    // of the difference of two true projections
+    // bound on the error of the difference of two projections onto this axis, CCHIP_BOUND_LAG
+    // clocks after them; of the difference of two true projections
     output wire [      `CCHIP_BOUND_W(COORD_W)-1:0] m_gap_bound,
-    output wire [                              2:0] m_axis_negative,  // components of the axis: < 0
-    output wire [                              2:0] m_axis_zero,      // = 0
-    // component of the largest absolute value
+    // component of the axis < 0, x in bit 0
+    output wire [                              2:0] m_axis_negative,
+    // component = 0; all three: the zero vector
+    output wire [                              2:0] m_axis_zero,
+    // component of the largest absolute value, the lowest of equals
     output wire [                              1:0] m_axis_largest
 );
 

@@ -22,23 +22,26 @@
 // same value as it or as a point. Any other class selects like NORMAL_A; its verdict has no
 // meaning.
 module cchip_sat_select #(
-    // width of a coordinate, bit
-    parameter integer COORD_W = 16,
-    // vertices of A and of B: 3 3, 3 4 or 4 4
+    parameter integer COORD_W = 16,  // width of a coordinate (bit); legal: 4..20
+    // vertices of A (vertex); legal: 3, 4; VERTS_A VERTS_B is 3 3, 3 4 or 4 4
     parameter integer VERTS_A = 3,
-    parameter integer VERTS_B = 3
+    parameter integer VERTS_B = 3    // vertices of B (vertex); legal: VERTS_A..4
 ) (
-    input  wire                                     clk,
-    input  wire [           `CCHIP_AXIS_CODE_W-1:0] s_code,    // {class, k, l}
-    // CCHIP_RAM_LATENCY clocks after s_code; vertex 0 in the low bits
+    input  wire                                     clk,       // clock, rising edge
+    // axis code {class[2:0], k[2:0], l[2:0]}
+    input  wire [           `CCHIP_AXIS_CODE_W-1:0] s_code,
+    // A, CCHIP_RAM_LATENCY clocks after s_code; vertex 0 in the low bits; of a vertex x lowest
     input  wire [            3*VERTS_A*COORD_W-1:0] s_a,
-    input  wire [            3*VERTS_B*COORD_W-1:0] s_b,
+    input  wire [            3*VERTS_B*COORD_W-1:0] s_b,       // B likewise
+    // start of e, and reference of the projections
     output wire [                    3*COORD_W-1:0] m_e_from,
-    output wire [                    3*COORD_W-1:0] m_e_to,
-    output wire [                    3*COORD_W-1:0] m_f_from,
-    output wire [                    3*COORD_W-1:0] m_f_to,
-    output wire [3*(VERTS_A+VERTS_B-3)*COORD_W-1:0] m_points,  // p0 in the low bits
-    output wire [                              1:0] m_own      // slot 0, 1 holds an own point
+    output wire [                    3*COORD_W-1:0] m_e_to,    // end of e
+    output wire [                    3*COORD_W-1:0] m_f_from,  // start of f
+    output wire [                    3*COORD_W-1:0] m_f_to,    // end of f
+    // points to project, p0 in the low bits
+    output wire [3*(VERTS_A+VERTS_B-3)*COORD_W-1:0] m_points,
+    // bit i: slot i holds a point of the own set of the axis
+    output wire [                              1:0] m_own
 );
 
   reg [3*COORD_W-1:0] m_e_from_q;

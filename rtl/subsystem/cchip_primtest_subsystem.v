@@ -19,98 +19,115 @@
 // Pairs: cchip_operand_memory, cchip_descriptor_queues; slots and their modules: cchip_slots,
 // cchip_swaps.
 module cchip_primtest_subsystem #(
-    // width of a coordinate, bit, 4..20
-    parameter integer COORD_W = 16,
-    // see cchip_pr_region
+    parameter integer COORD_W = 16,  // width of a signed coordinate (bit); legal: 4..20
+    // registers in each of the stages axis and project (clock); legal:
+    // CCHIP_SUBSTAGES_MIN(COORD_W)..32
     parameter integer SUBSTAGES = 10,
+    // pairs in flight in a slot; legal: 1..256
     parameter integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES),
-    parameter integer ABSOLUTE_PROJECTION = 0,
+    parameter integer ABSOLUTE_PROJECTION = 0,  // 1: one projector more, same results; legal: 0, 1
+    // 0: warped quads are left open where the directed beats do not decide; legal: 0, 1
     parameter integer WARPED_EXACT = 1,
-    // kinds of pairs: 3, or 4 with points against triangles
+    // kinds of pairs, 4 with points against triangles; the modules are 0..KINDS; legal: 3, 4
     parameter integer KINDS = 3,
-    // slots, 1..4
-    parameter integer SLOTS = 2,
-    // pairs in the queue of each kind, a power of two, 16..1024
-    parameter integer QUEUE_DEPTH = 128,
-    // width of the configuration port, bit, 8 or 32
-    parameter integer CFG_W = 8,
-    // clocks per word of the port
+    parameter integer SLOTS = 2,                                      // slots; legal: 1..4
+    parameter integer QUEUE_DEPTH = 128,  // pairs in each queue; legal: a power of two, 16..1024
+    parameter integer CFG_W = 8,  // width of the configuration port (bit); legal: 8, 32
+    // clocks per word of the port: 2 is 50 MHz at a clock of 100 MHz; legal: >= 1
     parameter integer CFG_DIVIDER = 2,
-    // reset on configuration, clocks
+    // reset after a configuration (clock); legal: 1..32
     parameter integer ROC_CYCLES = `CCHIP_ROC_CLOCKS_DEFAULT,
-    // modules at power-up, CCHIP_RM_BLANK .. , 0..KINDS
-    parameter integer SLOT0_RM_ID = 1,
-    parameter integer SLOT1_RM_ID = 3,
-    parameter integer SLOT2_RM_ID = 2,
-    parameter integer SLOT3_RM_ID = 1,
-    // 0: partitions of an FPGA; 1: simulated reconfiguration (see cchip_pr_slot)
+    parameter integer SLOT0_RM_ID = 1,  // module of slot 0 at power-up; legal: 0..KINDS
+    parameter integer SLOT1_RM_ID = 3,  // module of slot 1 at power-up; legal: 0..KINDS
+    parameter integer SLOT2_RM_ID = 2,  // module of slot 2 at power-up; legal: 0..KINDS
+    parameter integer SLOT3_RM_ID = 1,  // module of slot 3 at power-up; legal: 0..KINDS
+    // 0: each slot is a partition of an FPGA; 1: each slot holds all modules, exchanged by the
+    // words of the configuration port (see cchip_pr_slot); legal: 0, 1
     parameter integer SIMULATION = 0,
-    // start of the random numbers of a simulated reconfiguration, any
+    // start of the random numbers of a simulated reconfiguration; legal: any
     parameter integer SEED = 1,
-    // AxCACHE of reads, 0..15, and AxPROT, 0..7
+    // ARCACHE: 3 normal memory, 15 a coherent port; legal: 0..15
     parameter integer AXI_ARCACHE = 3,
-    parameter integer AXI_PROT = 0
+    parameter integer AXI_PROT = 0  // AxPROT: 0 secure, 2 non-secure; legal: 0..7
 ) (
-    input  wire                                   clk,
-    input  wire                                   rst,
-    // pairs; kind = ModuleId of the test: 1 tri-tri, 2 tri-quad, 3 quad-quad, 4 point-tri
-    // with s_pair_a as cchip_primtest_point_tri has it; a kind above KINDS counts as illegal
-    input  wire                                   s_pair_valid,
+    // ---- clock and reset
+    input  wire                                   clk,                // clock, rising edge
+    input  wire                                   rst,  // synchronous reset, active high
+    // ---- requests: pairs; kind = ModuleId of the test: 1 tri-tri, 2 tri-quad, 3 quad-quad, 4
+    //      point-tri with s_pair_a as cchip_primtest_point_tri has it; a kind above KINDS counts as
+    //      illegal
+    input  wire                                   s_pair_valid,       // a pair is offered
+    // the pair is accepted if s_pair_valid = 1 as well
     output wire                                   s_pair_ready,
+    // test that is asked for, ModuleId: 1 tri-tri, 2 tri-quad, 3 quad-quad; 0 is illegal
     input  wire [              `CCHIP_KIND_W-1:0] s_pair_kind,
-    input  wire [               `CCHIP_TAG_W-1:0] s_pair_tag,
+    input  wire [               `CCHIP_TAG_W-1:0] s_pair_tag,  // anything; returned with the result
+    // 0 EXHAUSTIVE, 1 DIRECTED; 2 and 3 are reserved
     input  wire [              `CCHIP_MODE_W-1:0] s_pair_mode,
+    // primitive A: vertex i in bits [3*COORD_W*i +: 3*COORD_W], x lowest; slot 3 of a triangle is
+    // ignored
     input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_a,
-    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,
-    input  wire [               `CCHIP_ERR_W-1:0] s_pair_err,
-    output wire                                   m_result_valid,
+    input  wire [`CCHIP_PRIMITIVE_W(COORD_W)-1:0] s_pair_b,           // primitive B likewise
+    input  wire [               `CCHIP_ERR_W-1:0] s_pair_err,         // eta, as in cchip_primtest
+    // ---- results
+    output wire                                   m_result_valid,     // a result is offered
+    // the result is taken if m_result_valid = 1 as well
     input  wire                                   m_result_ready,
-    output wire [              `CCHIP_KIND_W-1:0] m_result_kind,
-    output wire [               `CCHIP_TAG_W-1:0] m_result_tag,
+    output wire [              `CCHIP_KIND_W-1:0] m_result_kind,      // kind of the pair
+    output wire [               `CCHIP_TAG_W-1:0] m_result_tag,       // tag of the pair
+    // grid or not definite: never a false "no"
     output wire                                   m_result_hit,
+    // the exact answer for the grid coordinates; 1 without a test
     output wire                                   m_result_grid,
+    // grid is proven for the unrounded primitives
     output wire                                   m_result_definite,
+    // witness {class[2:0], k[2:0], l[2:0]}; class 7: not tested
     output wire [         `CCHIP_AXIS_CODE_W-1:0] m_result_axis,
-    output wire [             `CCHIP_BEATS_W-1:0] m_result_beats,
-    // registers, AXI4-Lite
-    input  wire                                   s_axil_awvalid,
-    output wire                                   s_axil_awready,
-    input  wire [                           11:0] s_axil_awaddr,
-    input  wire [                            2:0] s_axil_awprot,
-    input  wire                                   s_axil_wvalid,
-    output wire                                   s_axil_wready,
-    input  wire [                           31:0] s_axil_wdata,
-    input  wire [                            3:0] s_axil_wstrb,
-    output wire                                   s_axil_bvalid,
-    input  wire                                   s_axil_bready,
-    output wire [                            1:0] s_axil_bresp,
-    input  wire                                   s_axil_arvalid,
-    output wire                                   s_axil_arready,
-    input  wire [                           11:0] s_axil_araddr,
-    input  wire [                            2:0] s_axil_arprot,
-    output wire                                   s_axil_rvalid,
-    input  wire                                   s_axil_rready,
-    output wire [                           31:0] s_axil_rdata,
-    output wire [                            1:0] s_axil_rresp,
+    output wire [             `CCHIP_BEATS_W-1:0] m_result_beats,     // axes issued for the pair
+    // ---- registers, AXI4-Lite
+    input  wire                                   s_axil_awvalid,     // AXI4-Lite, write address
+    output wire                                   s_axil_awready,     // AXI4-Lite, write address
+    input  wire [                           11:0] s_axil_awaddr,  // AXI4-Lite, write address, byte
+    input  wire [                            2:0] s_axil_awprot,      // AXI4-Lite, ignored
+    input  wire                                   s_axil_wvalid,      // AXI4-Lite, write data
+    output wire                                   s_axil_wready,      // AXI4-Lite, write data
+    input  wire [                           31:0] s_axil_wdata,       // AXI4-Lite, write data
+    input  wire [                            3:0] s_axil_wstrb,       // AXI4-Lite, byte lanes
+    output wire                                   s_axil_bvalid,      // AXI4-Lite, write response
+    input  wire                                   s_axil_bready,      // AXI4-Lite, write response
+    output wire [                            1:0] s_axil_bresp,       // AXI4-Lite, OKAY or SLVERR
+    input  wire                                   s_axil_arvalid,     // AXI4-Lite, read address
+    output wire                                   s_axil_arready,     // AXI4-Lite, read address
+    input  wire [                           11:0] s_axil_araddr,  // AXI4-Lite, read address, byte
+    input  wire [                            2:0] s_axil_arprot,      // AXI4-Lite, ignored
+    output wire                                   s_axil_rvalid,      // AXI4-Lite, read data
+    input  wire                                   s_axil_rready,      // AXI4-Lite, read data
+    output wire [                           31:0] s_axil_rdata,       // AXI4-Lite, read data
+    output wire [                            1:0] s_axil_rresp,       // AXI4-Lite, OKAY or SLVERR
+    // ---- interrupt
+    // 1 while an enabled bit of interrupt_status is 1; 0 for a clock after each write of it
     output wire                                   irq,
-    // memory of the bitstreams, AXI4, read only
-    output wire                                   m_axi_arvalid,
-    input  wire                                   m_axi_arready,
-    output wire [                           31:0] m_axi_araddr,
-    output wire [                            7:0] m_axi_arlen,
-    output wire [                            2:0] m_axi_arsize,
-    output wire [                            1:0] m_axi_arburst,
-    output wire [                            3:0] m_axi_arcache,
-    output wire [                            2:0] m_axi_arprot,
-    input  wire                                   m_axi_rvalid,
-    output wire                                   m_axi_rready,
-    input  wire [                           31:0] m_axi_rdata,
-    input  wire [                            1:0] m_axi_rresp,
-    input  wire                                   m_axi_rlast,
-    // configuration port of the device
+    // ---- memory of the bitstreams, AXI4 read: memory of the bitstreams, AXI4, read only
+    output wire                                   m_axi_arvalid,      // AXI4 read, address
+    input  wire                                   m_axi_arready,      // AXI4 read, address
+    output wire [                           31:0] m_axi_araddr,       // AXI4 read, address, byte
+    output wire [                            7:0] m_axi_arlen,  // AXI4 read, beats - 1, at most 15
+    output wire [                            2:0] m_axi_arsize,  // AXI4 read, 2: 4 bytes per beat
+    output wire [                            1:0] m_axi_arburst,      // AXI4 read, 1: INCR
+    output wire [                            3:0] m_axi_arcache,      // AXI4 read, constant
+    output wire [                            2:0] m_axi_arprot,       // AXI4 read, constant
+    input  wire                                   m_axi_rvalid,       // AXI4 read, data
+    output wire                                   m_axi_rready,       // AXI4 read, data
+    input  wire [                           31:0] m_axi_rdata,        // AXI4 read, data
+    input  wire [                            1:0] m_axi_rresp,        // AXI4 read, response
+    input  wire                                   m_axi_rlast,  // AXI4 read, last beat of the burst
+    // ---- configuration port: configuration port of the device
+    // a word is written to the configuration port
     output wire                                   cfg_valid,
-    output wire [                      CFG_W-1:0] cfg_data,
-    input  wire                                   cfg_error  // any clock; level, or 2 clocks of clk
+    output wire [                      CFG_W-1:0] cfg_data,           // the word
+    // the device reports an error of its configuration, from any clock; a level, or a pulse of at
+    // least two clocks of clk
+    input  wire                                   cfg_error
 );
 
   reg irq_q;

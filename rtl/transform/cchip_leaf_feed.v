@@ -18,49 +18,51 @@
 //   cuts         every path from s_leaf and s_start, and to m_credit
 //   reset        leaf pairs inside are forgotten
 module cchip_leaf_feed #(
-    // contexts of queries: 2, 4, 8 or 16
-    parameter integer QUERIES = 16,
-    // width of a number of cchip_calc_result, bit
-    parameter integer LEAF_W = 6
+    parameter integer QUERIES = 16,  // contexts (query); legal: 2, 4, 8, 16
+    parameter integer LEAF_W = 6  // width of a number of cchip_calc_result (bit); legal: 1 or more
 ) (
-    input  wire                       clk,
-    input  wire                       rst,
-    // a query that has started
-    input  wire                       s_start_valid,
-    input  wire [$clog2(QUERIES)-1:0] s_start_context,
-    input  wire [ `CCHIP_QUERY_W-1:0] s_start_query,
-    // leaf pairs
-    input  wire                       s_leaf_valid,
-    input  wire [$clog2(QUERIES)-1:0] s_leaf_context,
-    input  wire [                1:0] s_leaf_epoch,
-    input  wire [                3:0] s_leaf_kinds,     // {B's, A's}
+    input  wire                       clk,              // clock, rising edge
+    input  wire                       rst,              // synchronous reset, active high
+    input  wire                       s_start_valid,    // a query has started
+    input  wire [$clog2(QUERIES)-1:0] s_start_context,  // its context
+    input  wire [ `CCHIP_QUERY_W-1:0] s_start_query,  // record QUERY, docs/hardware/definitions.md
+    // ---- leaf pairs
+    input  wire                       s_leaf_valid,     // a leaf pair
+    input  wire [$clog2(QUERIES)-1:0] s_leaf_context,   // context of its query
+    input  wire [                1:0] s_leaf_epoch,     // epoch of its query
+    input  wire [                3:0] s_leaf_kinds,     // kinds of its leaves, {B's, A's}
     input  wire                       s_leaf_failed,    // a line could not be read
-    input  wire [              127:0] s_leaf_lines,     // {B's, A's}: a beat
-    output wire                       m_credit,
-    // a number for a leaf pair; it ends without primitive pairs
-    output wire                       m_begin_valid,
-    input  wire                       m_begin_ready,
-    output wire [$clog2(QUERIES)-1:0] m_begin_context,
-    output wire [                1:0] m_begin_epoch,
-    output wire [                1:0] m_begin_pairs,    // primitive pairs - 1
-    input  wire [         LEAF_W-1:0] s_number,
-    output wire                       m_end_valid,
-    input  wire                       m_end_ready,
-    output wire [         LEAF_W-1:0] m_end_number,
-    output wire [$clog2(QUERIES)-1:0] m_end_context,
-    output wire [                1:0] m_end_epoch,
+    // a beat of the leaves (image.md, docs/hardware/image.md), 64 bits of each, {B's, A's}, the
+    // lowest first: with s_leaf_valid and on the seven clocks after it
+    input  wire [              127:0] s_leaf_lines,
+    output wire                       m_credit,         // a leaf pair has left: room for one more
+    // ---- a number for a leaf pair; it ends without primitive pairs
+    output wire                       m_begin_valid,    // a leaf pair begins
+    input  wire                       m_begin_ready,    // it has s_number
+    output wire [$clog2(QUERIES)-1:0] m_begin_context,  // context of its query
+    output wire [                1:0] m_begin_epoch,    // epoch of its query
+    output wire [                1:0] m_begin_pairs,    // its primitive pairs - 1
+    input  wire [         LEAF_W-1:0] s_number,         // number for the leaf pair that begins
+    output wire                       m_end_valid,      // it ends without primitive pairs
+    input  wire                       m_end_ready,      // taken
+    output wire [         LEAF_W-1:0] m_end_number,     // its number
+    output wire [$clog2(QUERIES)-1:0] m_end_context,    // context of its query
+    output wire [                1:0] m_end_epoch,      // epoch of its query
+    // MEMORY or CORRUPT of QueryCode, docs/hardware/definitions.md
     output wire [   `CCHIP_END_W-1:0] m_end_code,
-    // to cchip_transform
+    // ---- to cchip_transform
+    // a leaf pair for the transform; nothing of it changes until m_ready
     output wire                       m_valid,
-    input  wire                       m_ready,
-    output wire [              287:0] m_m,
-    output wire [              107:0] m_t,
-    output wire [                3:0] m_shift,
-    output wire [               11:0] m_error,
-    output wire [                3:0] m_kinds,
-    output wire [             1023:0] m_lines,
-    output wire [           LEAF_W:0] m_id,             // {swapped, number}
-    input  wire                       s_corrupt         // with m_ready: an illegal line
+    input  wire                       m_ready,          // taken
+    output wire [              287:0] m_m,              // M of its query
+    output wire [              107:0] m_t,              // t
+    output wire [                3:0] m_shift,          // the map is M 2^-shift
+    output wire [               11:0] m_error,          // bound on the error of a position, 2^-38
+    output wire [                3:0] m_kinds,          // kinds of the leaves
+    output wire [             1023:0] m_lines,          // the leaves
+    output wire [           LEAF_W:0] m_id,             // {user's objects are exchanged, number}
+    // with m_ready: a line is illegal, no primitive pairs follow
+    input  wire                       s_corrupt
 );
 
   localparam integer CONTEXT_W = $clog2(QUERIES);

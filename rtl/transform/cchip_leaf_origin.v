@@ -7,16 +7,18 @@
 //   throughput   an origin every 4 clocks
 //   cuts         every path
 //   reset        no origin
+//   inside       The three rows pass one shifter and one cchip_round_shift, one after the other: an
+//                origin has as many clocks as a pair has vertices.
 module cchip_leaf_origin (
-    input  wire         clk,
-    input  wire         rst,
-    input  wire         s_origin,
-    input  wire [107:0] s_t,         // 32 fraction bits
-    input  wire [ 71:0] s_origin_b,  // o_B
+    input  wire         clk,         // clock, rising edge
+    input  wire         rst,         // synchronous reset, active high
+    input  wire         s_origin,    // the origin has its turn: the dot products are on their way
+    input  wire [107:0] s_t,         // t, 3 x 36 bit, 32 fraction bits
+    input  wire [ 71:0] s_origin_b,  // o_B, 3 x 24 bit
     input  wire [  3:0] s_shift,     // M is M 2^-shift
     input  wire [  4:0] s_fine,      // of cchip_leaf_unit
     input  wire [167:0] s_moved,     // M o_A, 3 x 56 bit
-    output wire [134:0] m_origin,    // 3 x 45 bit
+    output wire [134:0] m_origin,    // the origin in the unit, 3 x 45 bit
     output wire         m_lost       // a rounding lost a bit
 );
 

@@ -13,34 +13,32 @@
 //                corrupt one every 2 clocks
 //   cuts         all but s_* to m_factor
 //   reset        no leaf pair
+//   rules        Offsets of triangles get the 24 bits that those of quads have.
 module cchip_leaf_sequencer #(
-    // clocks a vertex, 1 or 2
-    parameter integer PASSES = 1
+    parameter integer PASSES = 1  // clocks a vertex; legal: 1, 2
 ) (
-    input  wire         clk,
-    input  wire         rst,
-    // a leaf pair; nothing of it changes until s_ready
-    input  wire         s_valid,
-    output wire         s_ready,
-    input  wire [  3:0] s_kinds,      // {B's, A's}
-    input  wire         s_illegal,
-    input  wire [ 71:0] s_origin_a,
-    input  wire [359:0] s_points_a,   // vertices as offsets from the origin of their leaf
-    input  wire [359:0] s_points_b,
-    input  wire         room,         // for the pairs of primitives of a leaf pair
-    output wire         corrupt,
-    // a pair of primitives begins
-    output wire         launch,
-    output wire [  1:0] launch_pair,  // {A's, B's}
-    // what M is to be multiplied with: A's origin or the offset of a vertex of A, 3 x 24 bit
+    input  wire         clk,          // clock, rising edge
+    input  wire         rst,          // synchronous reset, active high
+    input  wire         s_valid,      // a leaf pair; nothing of it changes until s_ready
+    output wire         s_ready,      // it is done
+    input  wire [  3:0] s_kinds,      // kinds of the leaves, {B's, A's}
+    input  wire         s_illegal,    // an extent is illegal
+    input  wire [ 71:0] s_origin_a,   // origin of A's leaf, 3 x 24 bit
+    input  wire [359:0] s_points_a,   // vertices of A's leaf, as offsets from its origin
+    input  wire [359:0] s_points_b,   // vertices of B's leaf
+    input  wire         room,         // there is room for the pairs of primitives of a leaf pair
+    output wire         corrupt,      // with s_ready: s_illegal, so there were no vertices
+    output wire         launch,       // a pair of primitives begins
+    output wire [  1:0] launch_pair,  // which one, {A's, B's}
+    // A's origin or the offset of a vertex of A, 3 x 24 bit; what M is to be multiplied with: A's
+    // origin or the offset of a vertex of A, 3 x 24 bit
     output wire [ 71:0] m_factor,
-    output wire         m_pass,       // of PASSES = 2 the second one
-    // a clock later
-    output wire [ 71:0] m_offset_b,   // of the vertex of B
-    output wire         m_origin,     // that was the origin
-    output wire         m_valid,      // that was a vertex,
-    output wire         m_first,      // the first of its pair,
-    output wire         m_last        // the last
+    output wire         m_pass,       // of PASSES = 2 the second pass
+    output wire [ 71:0] m_offset_b,   // offset of the vertex of B, a clock later
+    output wire         m_origin,     // m_factor of the clock before was the origin
+    output wire         m_valid,      // it was a vertex
+    output wire         m_first,      // the first one of its pair
+    output wire         m_last        // the last one of its pair
 );
 
   localparam [1:0] TWO_TRIANGLES = 2'd2;

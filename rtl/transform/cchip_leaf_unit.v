@@ -11,24 +11,24 @@
 //   cuts         every path
 //   reset        none: values count only with the vertex they belong to
 module cchip_leaf_unit #(
-    // clocks from the last pass of a vertex to its output, >= 10
+    // from the last pass of a vertex to its output (clock); legal: >= 10
     parameter integer OUT = 15
 ) (
-    input  wire        clk,
+    input  wire        clk,         // clock, rising edge
     input  wire [ 3:0] s_shift,     // M is M 2^-shift
     input  wire [11:0] s_error,     // bound on the error of a position, 2^-38
-    input  wire [ 4:0] s_extent_a,  // of the leaf
-    input  wire [ 4:0] s_extent_b,
-    input  wire [ 1:0] s_quads,     // {B's, A's}
-    input  wire [ 1:0] s_rounded,   // vertices are rounded, {B's, A's}
+    input  wire [ 4:0] s_extent_a,  // extent of A's leaf
+    input  wire [ 4:0] s_extent_b,  // extent of B's leaf
+    input  wire [ 1:0] s_quads,     // the leaf is one quad, {B's, A's}
+    input  wire [ 1:0] s_rounded,   // its vertices are rounded, {B's, A's}
     input  wire        s_open,      // no answer for this leaf pair is definite
-    output wire [ 3:0] m_shift,
+    output wire [ 3:0] m_shift,     // s_shift, a clock later
     output wire [ 4:0] m_cut_a,     // bits of an offset of A below the unit
-    output wire [ 4:0] m_cut_b,
-    output wire [ 4:0] m_fine,      // x - 8
-    output wire [15:0] m_error_a,   // bound on twice the error of a vertex
-    output wire [ 5:0] m_error_b,
-    output wire        m_open
+    output wire [ 4:0] m_cut_b,     // bits of an offset of B below the unit
+    output wire [ 4:0] m_fine,      // x - 8, where the unit is 2^(x - 48)
+    output wire [15:0] m_error_a,   // bound on twice the error of a vertex of A
+    output wire [ 5:0] m_error_b,   // the same of B
+    output wire        m_open       // s_open
 );
 
   // ---- clocks 1 to 4: the unit, 2^(x - 48), and how far each leaf is above it

@@ -17,30 +17,31 @@
 //   reset        vertices inside are forgotten
 // Bit for bit model::normalise.
 module cchip_normaliser #(
-    // width of a coordinate on the grid, bit, 4..20
-    parameter integer COORD_W = 16,
-    // clocks from one vertex of a pair to the next, 1 or 2
-    parameter integer PASSES  = 1
+    parameter integer COORD_W = 16,  // width of a coordinate on the grid (bit); legal: 4..20
+    parameter integer PASSES  = 1    // from one vertex of a pair to the next (clock); legal: 1, 2
 ) (
-    input  wire                               clk,
-    input  wire                               rst,
-    input  wire                               s_valid,
-    input  wire                               s_first,
-    input  wire                               s_last,
-    input  wire [                      134:0] s_a,        // 3 x 45 bit
-    input  wire [                       74:0] s_b,        // 3 x 25 bit
-    // what a rounding has lost a bit of: {vertex of B, vertex of A, origin of A's leaf}
+    input  wire                               clk,        // clock, rising edge
+    input  wire                               rst,        // synchronous reset, active high
+    input  wire                               s_valid,    // a vertex of A and one of B
+    input  wire                               s_first,    // the first of a pair
+    input  wire                               s_last,     // its last, the third or the fourth
+    input  wire [                      134:0] s_a,  // vertex of A, 3 x 45 bit, x lowest; units
+    input  wire [                       74:0] s_b,        // vertex of B, 3 x 25 bit
+    // rounding it lost a bit: {B's, A's, origin of A's leaf}; what a rounding has lost a bit of:
+    // {vertex of B, vertex of A, origin of A's leaf}
     input  wire [                        2:0] s_lost,
-    // with the last vertex: bound on twice the error of a vertex, less its s_lost; units
+    // with the last vertex: bound on twice the error of a vertex of A without what s_lost says,
+    // units; with the last vertex: bound on twice the error of a vertex, less its s_lost; units
     input  wire [                       15:0] s_error_a,
-    input  wire [                        5:0] s_error_b,
-    input  wire                               s_open,     // no answer for this pair is definite
-    output wire                               m_valid,
-    output wire                               m_first,
-    output wire                               m_last,
-    output wire [`CCHIP_POINT_W(COORD_W)-1:0] m_a,
-    output wire [`CCHIP_POINT_W(COORD_W)-1:0] m_b,
-    output wire [           `CCHIP_ERR_W-1:0] m_err       // eta
+    input  wire [                        5:0] s_error_b,  // the same of B
+    // with the last vertex: no answer for this pair is definite
+    input  wire                               s_open,
+    output wire                               m_valid,    // a vertex on the grid
+    output wire                               m_first,    // the first of its pair
+    output wire                               m_last,     // its last
+    output wire [`CCHIP_POINT_W(COORD_W)-1:0] m_a,        // vertex of A, grid steps
+    output wire [`CCHIP_POINT_W(COORD_W)-1:0] m_b,        // vertex of B
+    output wire [           `CCHIP_ERR_W-1:0] m_err       // eta of the pair, 0..15
 );
 
   localparam integer A_W = 45;

@@ -15,42 +15,55 @@
 //   cuts         every path: each output is a flip-flop, but those of m_a, m_b and m_kind, which
 //                are one multiplexer behind theirs
 //   reset        pairs inside are forgotten; the credit is whole
+//   timing       CCHIP_TRANSFORM_LATENCY(PASSES) clocks from the first clock of a leaf pair to its
+//                first vertex, 33 or 37; then PASSES clocks a vertex without a gap. 4 for two
+//                triangles, 13 for four pairs of triangles, 5 with quads. It begins while at least
+//                four of the CREDIT are free. m_err, m_kind, m_face_* and m_id are those of the
+//                pair on each of its vertices.
+//   numbers      See cchip_vertex_transform, cchip_normaliser and docs/hardware/image.md.
+//   inside       The two modules, a counter of credit, and a delay line for what is known of a
+//                pair.
+//   why          The way from leaves to a slot has a fixed length and no ready runs back along it:
+//                a leaf pair begins only when there is room for all that it can become.
 module cchip_transform #(
-    // width of a coordinate on the grid, bit, 4..20
-    parameter integer COORD_W = 16,
-    // clocks a vertex, 1 (36 multiplier blocks) or 2 (18)
+    parameter integer COORD_W = 16,  // width of a coordinate on the grid (bit); legal: 4..20
+    // a vertex; 1 takes 36 multiplier blocks of 18x18 bit, 2 takes 18 (clock); legal: 1, 2
     parameter integer PASSES = 1,
-    // pairs of primitives that the receiver has room for, 4..4096
+    // pairs of primitives that the receiver has room for; legal: 4..4096
     parameter integer CREDIT = 32,
-    // width of what is known by its leaves, bit, >= 1
-    parameter integer ID_W = 6
+    parameter integer ID_W = 6       // width of s_id and m_id (bit); legal: 1 or more
 ) (
-    input  wire                               clk,
-    input  wire                               rst,
-    // a leaf pair and the map of its query
+    input  wire                               clk,       // clock, rising edge
+    input  wire                               rst,       // synchronous reset, active high
+    // ---- a leaf pair and the map of its query
+    // a leaf pair; nothing of s_* changes until s_ready
     input  wire                               s_valid,
-    output wire                               s_ready,
-    input  wire [                      287:0] s_m,
-    input  wire [                      107:0] s_t,
-    input  wire [                        3:0] s_shift,
-    input  wire [                       11:0] s_error,
-    input  wire [                        3:0] s_kinds,   // {B's, A's}
-    input  wire [                     1023:0] s_lines,   // {B's, A's}
-    input  wire [                   ID_W-1:0] s_id,
-    output wire                               corrupt,   // with s_ready: an illegal line
-    // vertices; what is on the right from m_kind on is that of the whole pair
-    output wire                               m_valid,
-    output wire                               m_first,
-    output wire                               m_last,
-    output wire [`CCHIP_POINT_W(COORD_W)-1:0] m_a,
-    output wire [`CCHIP_POINT_W(COORD_W)-1:0] m_b,
-    output wire [           `CCHIP_ERR_W-1:0] m_err,
-    output wire [          `CCHIP_KIND_W-1:0] m_kind,
-    output wire [                       31:0] m_face_a,  // of the image of A
-    output wire [                       31:0] m_face_b,
-    output wire [                   ID_W-1:0] m_id,
-    output wire [                        1:0] m_pair,    // which of its leaf pair's primitive pairs
-    input  wire                               s_credit
+    output wire                               s_ready,   // it is taken
+    input  wire [                      287:0] s_m,  // M of its query, 30 fraction bits, row by row
+    input  wire [                      107:0] s_t,       // t, 32 fraction bits
+    input  wire [                        3:0] s_shift,   // the map is M 2^-shift
+    input  wire [                       11:0] s_error,   // bound on the error of a position, 2^-38
+    input  wire [                        3:0] s_kinds,   // kinds of the leaves, {B's, A's}
+    // the leaves, {B's, A's} (image.md, docs/hardware/image.md)
+    input  wire [                     1023:0] s_lines,
+    input  wire [                   ID_W-1:0] s_id,      // comes back with every pair of primitives
+    // with s_ready: an extent is over 24, no pairs of primitives follow
+    output wire                               corrupt,
+    // ---- vertices; what is on the right from m_kind on is that of the whole pair
+    output wire                               m_valid,   // a vertex of each primitive
+    output wire                               m_first,   // the first of its pair
+    output wire                               m_last,    // its last, the third or the fourth
+    output wire [`CCHIP_POINT_W(COORD_W)-1:0] m_a,  // vertex of the first primitive, grid steps
+    output wire [`CCHIP_POINT_W(COORD_W)-1:0] m_b,       // vertex of the second
+    output wire [           `CCHIP_ERR_W-1:0] m_err,     // eta of the pair
+    output wire [          `CCHIP_KIND_W-1:0] m_kind,    // ModuleId of its test
+    // number of the face of A, for any places of the primitives
+    output wire [                       31:0] m_face_a,
+    output wire [                       31:0] m_face_b,  // number of the face of B
+    output wire [                   ID_W-1:0] m_id,      // s_id of its leaves
+    // which of its leaf pair: 2 (second of A) + (second of B)
+    output wire [                        1:0] m_pair,
+    input  wire                               s_credit   // the receiver has room for one pair more
 );
 
   localparam [1:0] QUAD = 2'd3;

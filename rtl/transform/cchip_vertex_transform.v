@@ -17,36 +17,40 @@
 //   reset        what is inside is dropped
 // Bit for bit model::move_leaves.
 module cchip_vertex_transform #(
-    // clocks a vertex, 1 or 2
+    // a vertex; 1 takes 36 multiplier blocks of 18x18 bit, 2 takes 18 (clock); legal: 1, 2
     parameter integer PASSES = 1
 ) (
-    input  wire          clk,
-    input  wire          rst,
-    input  wire          s_valid,
-    output wire          s_ready,
-    // map of the query
-    input  wire [ 287:0] s_m,          // 30 fraction bits, row by row
-    input  wire [ 107:0] s_t,          // 32 fraction bits
-    input  wire [   3:0] s_shift,      // M is M 2^-shift
+    input  wire          clk,          // clock, rising edge
+    input  wire          rst,          // synchronous reset, active high
+    input  wire          s_valid,      // a leaf pair; nothing of s_* changes until s_ready
+    output wire          s_ready,      // it is taken
+    // ---- map of the query
+    input  wire [ 287:0] s_m,          // M of its query, 30 fraction bits, row by row
+    input  wire [ 107:0] s_t,          // t, 32 fraction bits
+    input  wire [   3:0] s_shift,      // the map is M 2^-shift
     input  wire [  11:0] s_error,      // bound on the error of a position, 2^-38
-    // leaves (docs/hardware/image.md)
-    input  wire [   3:0] s_kinds,      // {B's, A's}
-    input  wire [1023:0] s_lines,      // {B's, A's}
-    input  wire          room,         // for the pairs of primitives of a leaf pair
-    output wire          corrupt,      // with s_ready: an illegal extent, so there are no vertices
-    // a pair of primitives begins: its vertices come in CCHIP_VERTEX_LAUNCH clocks
-    output wire          launch,
-    output wire [   1:0] launch_pair,  // {A's, B's}
-    // vertices
-    output wire          m_valid,
-    output wire          m_first,
-    output wire          m_last,
-    output wire [ 134:0] m_a,          // 3 x 45 bit
-    output wire [  74:0] m_b,          // 3 x 25 bit
-    output wire [   2:0] m_lost,       // a rounding lost a bit: {vertex of B, of A, A's origin}
-    output wire [  15:0] m_error_a,    // bound on twice the error of a vertex, less its m_lost
-    output wire [   5:0] m_error_b,
-    output wire          m_open        // no answer for this pair is definite
+    // ---- leaves (docs/hardware/image.md)
+    // kinds of the leaves, {B's, A's}: 1 triangle, 2 two triangles, 3 quad
+    input  wire [   3:0] s_kinds,
+    input  wire [1023:0] s_lines,      // the leaves, {B's, A's} (image.md, docs/hardware/image.md)
+    input  wire          room,         // a leaf pair may begin
+    output wire          corrupt,  // with s_ready: an extent is over 24, so there are no vertices
+    // ---- a pair of primitives begins: its vertices come in CCHIP_VERTEX_LAUNCH clocks
+    output wire          launch,       // a pair of primitives begins
+    // which primitive, {A's, B's}; s_* are still those of its leaves
+    output wire [   1:0] launch_pair,
+    // ---- vertices
+    output wire          m_valid,      // a vertex of A and one of B
+    output wire          m_first,      // the first of a pair of primitives
+    output wire          m_last,       // its last
+    output wire [ 134:0] m_a,          // vertex of A, 3 x 45 bit, x lowest; units of the leaf pair
+    output wire [  74:0] m_b,          // vertex of B, 3 x 25 bit
+    // rounding lost a bit: {vertex of B, vertex of A, origin of A's leaf}
+    output wire [   2:0] m_lost,
+    // bound on twice the error of a vertex of A, in units, less its flags of m_lost
+    output wire [  15:0] m_error_a,
+    output wire [   5:0] m_error_b,    // the same of B
+    output wire          m_open        // a leaf says that no answer is definite
 );
 
   localparam [1:0] QUAD = 2'd3;

@@ -17,99 +17,108 @@
 //   reset        drops queries and lines; takes 2^SET_W clocks of the cache. It acts a clock
 //                later: hold rst for 2 clocks or more
 module cchip_broad_phase #(
-    // queries at once: 2, 4, 8 or 16
-    parameter integer QUERIES = 16,
-    // node pairs in flight
-    parameter integer PAIRS = 48,
-    // leaf pairs that are fetched at once; PAIRS + LEAVES is 8, 16, 32 or 64
+    parameter integer QUERIES = 16,     // queries at once (query); legal: 2, 4, 8, 16
+    parameter integer PAIRS = 48,       // node pairs in flight; legal: with LEAVES 8, 16, 32 or 64
+    // leaf pairs that are fetched at once; legal: >= 1; PAIRS + LEAVES is 8, 16, 32 or 64
     parameter integer LEAVES = 16,
-    // entries of a query's stack: 8, 16, 32 or 64
-    parameter integer STACK = 64,
-    // entries of the queue of leaves, more than PAIRS
-    parameter integer LEAF_DEPTH = 72,
-    // size of the cache, KiB: 1, 2, 4 ... 1024
-    parameter integer CACHE_KB = 128,
-    // lines in flight from memory: 2, 4, 8, 16 or 32
-    parameter integer MISSES = 32,
-    // ranges of lines to lock, 1..4
-    parameter integer LOCKS = 2,
-    // width of the data bus of memory, bit: 64, 128, 256 or 512
+    parameter integer STACK = 64,       // stack of a query (entry); legal: 8, 16, 32, 64
+    parameter integer LEAF_DEPTH = 72,  // queue of leaves (entry); legal: PAIRS + 1 .. 128
+    parameter integer CACHE_KB = 128,   // size of the cache (KiB); legal: 1, 2, 4 ... 1024
+    parameter integer MISSES = 32,      // lines in flight from memory; legal: 2, 4, 8, 16, 32
+    parameter integer LOCKS = 2,        // ranges of lines to lock; legal: 1..4
+    // width of the data bus of memory (bit); legal: 64, 128, 256, 512
     parameter integer DATA_W = 128
 ) (
-    input  wire                            clk,
-    input  wire                            rst,
-    // limits; they may change on any clock, and count for the queries at work too.
-    // node pairs of a query in flight, 0..7; 0 counts as 1; half of it with leaf pairs out
+    // ---- clock and reset
+    input  wire                            clk,                // clock, rising edge
+    input  wire                            rst,                // synchronous reset, active high
+    // ---- limits; they may change on any clock, and count for the queries at work too.
+    //      node pairs of a query in flight, 0..7; 0 counts as 1; half of it with leaf pairs out
+    // node pairs of a query that may be in flight, 0..7; 0 counts as 1; half of it for a query for
+    // the first hit with leaf pairs out
     input  wire [                     2:0] pairs_each,
-    // node pairs of a query, 0..2^32 - 1; 0: it ends with code STEPS at its first one
+    // ---- node pairs of a query, 0..2^32 - 1; 0: it ends with code STEPS at its first one
+    // node pairs after which a query ends with code steps, 0..2^32 - 1
     input  wire [                    31:0] step_limit,
-    // open pairs of a FIRST query, 0..255; 0 counts as 1
+    // open pairs after which a query for the first hit ends with code host, 0..255; 0 counts as 1
     input  wire [                     7:0] open_limit,
-    // queries (docs/hardware/image.md)
-    input  wire                            s_query_valid,
-    output wire                            s_query_ready,
+    // ---- queries (docs/hardware/image.md)
+    input  wire                            s_query_valid,      // a query
+    output wire                            s_query_ready,      // it is taken
+    // its line (image.md, docs/hardware/image.md, "Query")
     input  wire [                   511:0] s_query,
-    // a query that has started
-    output wire                            m_start_valid,
-    output wire [     $clog2(QUERIES)-1:0] m_start_context,
-    output wire [                     1:0] m_start_epoch,
-    output wire [                   511:0] m_start_query,
-    // leaf pairs; one of them at most until s_credit says that it has left
-    output wire                            m_leaf_valid,
-    output wire [     $clog2(QUERIES)-1:0] m_leaf_context,
-    output wire [                     1:0] m_leaf_epoch,
-    output wire [                     3:0] m_leaf_kinds,         // {B's, A's}
-    output wire                            m_leaf_failed,        // a line could not be read
-    output wire [                   127:0] m_leaf_lines,         // one of eight beats
+    // ---- queries that have started
+    output wire                            m_start_valid,      // a query has started
+    output wire [     $clog2(QUERIES)-1:0] m_start_context,    // its context
+    output wire [                     1:0] m_start_epoch,      // its epoch
+    output wire [                   511:0] m_start_query,      // its line
+    // ---- leaf pairs: leaf pairs; one of them at most until s_credit says that it has left
+    output wire                            m_leaf_valid,       // a leaf pair, for one clock
+    output wire [     $clog2(QUERIES)-1:0] m_leaf_context,     // context of its query
+    output wire [                     1:0] m_leaf_epoch,       // epoch of its query
+    // kinds of the leaves, {B's, A's}: 1 triangle, 2 two triangles, 3 quad
+    output wire [                     3:0] m_leaf_kinds,
+    output wire                            m_leaf_failed,      // a line could not be read
+    // a beat of the leaves (image.md, docs/hardware/image.md), 64 bits of each, {B's, A's}, the
+    // lowest first: with m_leaf_valid and on the seven clocks after it
+    output wire [                   127:0] m_leaf_lines,
+    // the receiver has taken a leaf pair: room for one more of two
     input  wire                            s_credit,
-    // outcome of each
-    input  wire                            s_result_valid,
-    output wire                            s_result_ready,
-    input  wire [     $clog2(QUERIES)-1:0] s_result_context,
-    input  wire [                     1:0] s_result_epoch,
-    input  wire [                     2:0] s_result_hits,        // definite hits, 0..4
-    input  wire [                     2:0] s_result_open,        // others
+    // ---- results of leaf pairs: outcome of each
+    input  wire                            s_result_valid,     // outcome of a leaf pair
+    output wire                            s_result_ready,     // it is taken
+    input  wire [     $clog2(QUERIES)-1:0] s_result_context,   // context of its query
+    input  wire [                     1:0] s_result_epoch,     // epoch of its query
+    input  wire [                     2:0] s_result_hits,      // definite hits, 0..4
+    input  wire [                     2:0] s_result_open,      // hits that are not definite, 0..4
+    // 0, or the code with which the query is to end
     input  wire [                     2:0] s_result_code,
-    // of each result, in their order: was its query still at work?
+    // ---- judgements of results: of each result, in their order: was its query still at work?
+    // judgement of a result, in the order of s_result
     output wire                            m_judged_valid,
-    output wire                            m_judged_live,
-    output wire [                    31:0] m_judged_tag,
-    // queries that have ended
-    output wire                            m_done_valid,
-    input  wire                            m_done_ready,
-    output wire [                    31:0] m_done_tag,
+    output wire                            m_judged_live,      // its query was still at work
+    output wire [                    31:0] m_judged_tag,       // tag of that query
+    // ---- answers: queries that have ended
+    output wire                            m_done_valid,       // a query has ended
+    input  wire                            m_done_ready,       // its answer is taken
+    output wire [                    31:0] m_done_tag,         // tag of the query
+    // how it ended: 0 ok, 1 for the host, 2 step limit, 3 full stack, 4 corrupt line, 5 line
+    // outside, 6 bad descriptor, 7 memory
     output wire [                     2:0] m_done_code,
-    output wire [                     1:0] m_done_answer,        // no, yes, open
-    output wire [                    31:0] m_done_steps,
-    output wire [                    31:0] m_done_pairs,
-    // lines to lock; none if first > last
-    input  wire [            LOCKS*32-1:0] lock_first,
+    output wire [                     1:0] m_done_answer,      // 0 no, 1 yes, 2 open
+    output wire [                    31:0] m_done_steps,       // node pairs expanded
+    output wire [                    31:0] m_done_pairs,       // hits
+    // ---- locked lines: lines to lock; none if first > last
+    input  wire [            LOCKS*32-1:0] lock_first,         // first line of each range to lock
+    // last line; a range with first > last is empty
     input  wire [            LOCKS*32-1:0] lock_last,
-    // lines to invalidate
-    input  wire                            invalidate_valid,
-    output wire                            invalidate_ready,
-    input  wire [                    31:0] invalidate_first,
-    input  wire [                    31:0] invalidate_last,
-    // what happens on this clock, for counters
-    output wire                            count_step,
-    output wire [                     4:0] count_tests,
-    output wire                            count_leaf_pair,
-    output wire [                     1:0] count_hit,
-    output wire [                     1:0] count_miss,
-    output wire [                     1:0] count_wait,
-    output wire [                     1:0] count_again,
-    output wire                            count_box_busy,       // the box test works
-    // client of cchip_axi_read
-    output wire                            m_read_valid,
-    output wire [      $clog2(MISSES)-1:0] m_read_slot,
-    output wire [                    57:0] m_read_line,
-    input  wire                            s_read_valid,
-    input  wire [      $clog2(MISSES)-1:0] s_read_slot,
-    input  wire [                     2:0] s_read_beat,
-    input  wire                            s_read_last,
+    // ---- invalidation
+    input  wire                            invalidate_valid,   // command: invalidate lines
+    output wire                            invalidate_ready,   // no command is at work
+    input  wire [                    31:0] invalidate_first,   // first line to invalidate
+    input  wire [                    31:0] invalidate_last,    // last line to invalidate
+    // ---- events to count: what happens on this clock, for counters
+    output wire                            count_step,         // a node pair was expanded
+    output wire [                     4:0] count_tests,        // child pairs compared
+    output wire                            count_leaf_pair,    // a leaf pair is fetched
+    output wire [                     1:0] count_hit,          // as of cchip_cache
+    output wire [                     1:0] count_miss,         // the same
+    output wire [                     1:0] count_wait,         // the same
+    output wire [                     1:0] count_again,        // the same
+    output wire                            count_box_busy,     // the box test has a node pair
+    // ---- read requests: client of cchip_axi_read
+    output wire                            m_read_valid,       // request to cchip_axi_read
+    output wire [      $clog2(MISSES)-1:0] m_read_slot,        // place of the line there
+    output wire [                    57:0] m_read_line,        // number of the line
+    // ---- read answers
+    input  wire                            s_read_valid,       // beat of an answer
+    input  wire [      $clog2(MISSES)-1:0] s_read_slot,        // its place
+    input  wire [                     2:0] s_read_beat,        // number of the beat in its line
+    input  wire                            s_read_last,        // last beat
+    // outcome of the read, while s_read_last = 1
     input  wire [  `CCHIP_READ_CODE_W-1:0] s_read_code,
-    input  wire [              DATA_W-1:0] s_read_data,
-    input  wire [              MISSES-1:0] s_read_outstanding
+    input  wire [              DATA_W-1:0] s_read_data,        // data
+    input  wire [              MISSES-1:0] s_read_outstanding  // outstanding of its slots
 );
 
   localparam integer PLACES = PAIRS + LEAVES;

@@ -5,10 +5,14 @@
 // rows: a carry chain over 16 bits is slower.
 //   latency      0 clocks: all outputs follow pairs
 //   cuts         nothing
+//   about        The lowest of the child pairs of a node pair, for cchip_leaf_queue and
+//                cchip_traversal_decision.
+//   timing       Combinational.
+//   why          A carry chain over 16 bits is slower, and a priority search over 16 bits deeper.
 module cchip_first_pair (
-    input  wire [15:0] pairs,
-    output wire [ 3:0] first,   // any if pairs is 0
-    output wire [15:0] rest,    // pairs without the first
+    input  wire [15:0] pairs,   // bit 4 i + j: child i of A with child j of B
+    output wire [ 3:0] first,   // number of the lowest one; any if pairs is 0
+    output wire [15:0] rest,    // pairs without it
     output wire        several  // there are two or more
 );
 

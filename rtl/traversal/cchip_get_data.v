@@ -24,57 +24,81 @@
 //   cuts         every path: each output is a flip-flop
 //   reset        drops all pairs; no line of an earlier request may come
 module cchip_get_data #(
-    // queries at once: 2, 4, 8 or 16
-    parameter integer QUERIES = 16,
-    // node pairs in flight
-    parameter integer PAIRS = 48,
-    // leaf pairs in flight; PAIRS + LEAVES is 8, 16, 32 or 64
+    parameter integer QUERIES = 16,  // queries at once (query); legal: 2, 4, 8, 16
+    parameter integer PAIRS = 48,    // node pairs in flight; legal: with LEAVES 8, 16, 32 or 64
+    // leaf pairs that are fetched at once, or wait for their receiver; legal: >= 1; PAIRS + LEAVES
+    // is 8, 16, 32 or 64
     parameter integer LEAVES = 16,
-    // leaf pairs that their receiver has room for, 1..3
-    parameter integer LEAF_ROOM = 1
+    parameter integer LEAF_ROOM = 1  // leaf pairs that their receiver has room for; legal: 1..3
 ) (
-    input  wire                                                 clk,
+    input  wire                                                 clk,  // clock, rising edge
+    // synchronous reset, active high
     input  wire                                                 rst,
-    // two lines wanted; always taken
+    // ---- two lines wanted; always taken
+    // a pair of lines is wanted
     input  wire                                                 s_valid,
-    input  wire [                     $clog2(PAIRS+LEAVES)-1:0] s_place,   // >= PAIRS: leaves
-    input  wire [                 $clog2(QUERIES)-1:0] s_context,
-    input  wire [             `CCHIP_NODE_PAIR_W-1:0] s_record,
-    input  wire [                                         63:0] s_lines,   // {B's, A's}
-    // the poses: node pairs wait for theirs
-    input  wire                                                 s_pose_valid,
-    input  wire [                          $clog2(QUERIES)-1:0] s_pose_context,
-    // ports of the cache, A's lines through port 0, B's through port 1
+    // its place; from PAIRS on a leaf pair
+    input  wire [                     $clog2(PAIRS+LEAVES)-1:0] s_place,
+    input  wire [                 $clog2(QUERIES)-1:0] s_context,  // context of its query
+    input  wire [             `CCHIP_NODE_PAIR_W-1:0] s_record,  // as m_record of cchip_traversal
+    // numbers of the lines, {B's, A's}
+    input  wire [                                         63:0] s_lines,
+    // ---- the poses: node pairs wait for theirs
+    input  wire                                                 s_pose_valid,  // a pose is set up
+    input  wire [                          $clog2(QUERIES)-1:0] s_pose_context,   // of this context
+    // ---- ports of the cache, A's lines through port 0, B's through port 1
+    // bit p: request to port p of the cache, p = 0 for A
     output wire [                                          1:0] m_line_valid,
-    output wire [                   2*$clog2(PAIRS+LEAVES)-1:0] m_line_place,
-    output wire [                                         63:0] m_line,
+    output wire [                   2*$clog2(PAIRS+LEAVES)-1:0] m_line_place,     // its place
+    output wire [                                         63:0] m_line,  // number of the line
+    // bit p: a line of port p
     input  wire [                                          1:0] s_line_valid,
-    input  wire [                   2*$clog2(PAIRS+LEAVES)-1:0] s_line_place,
-    input  wire [                     2*`CCHIP_READ_CODE_W-1:0] s_line_code,
-    input  wire [                                        511:0] s_line_data,  // a beat of each
-    // node pairs, with the children that count: none if these are headers; a pair that is taken
-    // on the next clock is told of on this one. That is the third clock of the pair or later
-    output wire                                                 m_pair_valid,
-    input  wire                                                 m_pair_soon,   // on the next clock
-    output wire [                     $clog2(PAIRS+LEAVES)-1:0] m_pair_place,
+    input  wire [                   2*$clog2(PAIRS+LEAVES)-1:0] s_line_place,     // its place
+    input  wire [                     2*`CCHIP_READ_CODE_W-1:0] s_line_code,  // outcome of the read
+    // a half of the line, {port 1's, port 0's}: the lower one with s_line_valid, the upper one on
+    // the next clock, on which s_line_place stays
+    input  wire [                                        511:0] s_line_data,
+    // ---- node pairs, with the children that count: none if these are headers; a pair that is
+    //      taken on the next clock is told of on this one. That is the third clock of the pair or
+    //      later
+    output wire                                                 m_pair_valid,     // a node pair
+    // the box test takes the pair on the next clock
+    input  wire                                                 m_pair_soon,
+    output wire [                     $clog2(PAIRS+LEAVES)-1:0] m_pair_place,     // its place
+    // context of its query
     output wire [                          $clog2(QUERIES)-1:0] m_pair_context,
-    output wire [                                          7:0] m_pair_children,  // {B's, A's}
-    // leaf pairs; no ready: their receiver has taken one, and has room for another
+    // children that count, {B's, A's}
+    output wire [                                          7:0] m_pair_children,
+    // ---- leaf pairs; no ready: their receiver has taken one, and has room for another
+    // the receiver of leaves has taken one of those that it was given: room for one more
     input  wire                                                 s_leaf_taken,
+    // a leaf pair, for one clock
     output wire                                                 m_leaf_valid,
-    output wire [                     $clog2(PAIRS+LEAVES)-1:0] m_leaf_place,
+    output wire [                     $clog2(PAIRS+LEAVES)-1:0] m_leaf_place,     // its place
+    // context of its query
     output wire [                          $clog2(QUERIES)-1:0] m_leaf_context,
-    output wire [                                          1:0] m_leaf_epoch,
-    output wire [                                          3:0] m_leaf_kinds,  // {B's, A's}
-    output wire                                                 m_leaf_failed,  // lines not read
-    output wire [                                        127:0] m_leaf_lines,  // {B's, A's}: a beat
-    output wire                                                 m_leaf_left,  // its place is free
-    output wire [                                        511:0] m_lines,  // {B's, A's}: a beat
-    // of a node pair whose verdict has come; 1 clock later
+    output wire [                                          1:0] m_leaf_epoch,  // epoch of its query
+    // kinds of the leaves, {B's, A's}: 1 triangle, 2 two triangles, 3 quad
+    output wire [                                          3:0] m_leaf_kinds,
+    // a line could not be read
+    output wire                                                 m_leaf_failed,
+    // a beat of the leaves (image.md, docs/hardware/image.md), 64 bits of each, {B's, A's}, the
+    // lowest first: with m_leaf_valid and on the seven clocks after it
+    output wire [                                        127:0] m_leaf_lines,
+    // the last beat: m_leaf_place is free
+    output wire                                                 m_leaf_left,
+    // halves of the lines of a node pair, {B's, A's}: the lower ones on the first clock of
+    // m_pair_valid, the upper ones on the next clock
+    output wire [                                        511:0] m_lines,
+    // ---- of a node pair whose verdict has come; 1 clock later
+    // read what is known of this place
     input  wire                                                 lookup,
+    // place of a node pair
     input  wire [                     $clog2(PAIRS+LEAVES)-1:0] lookup_place,
-    output wire [                 $clog2(QUERIES)-1:0] lookup_context,
-    output wire [             `CCHIP_NODE_PAIR_W-1:0] lookup_record,
+    output wire [                 $clog2(QUERIES)-1:0] lookup_context,            // its context
+    output wire [             `CCHIP_NODE_PAIR_W-1:0] lookup_record,              // its record
+    // {code, kinds of B's children, line of the first, kinds of A's, line of the first}; of headers
+    // the roots
     output wire [                     `CCHIP_NODES_W-1:0] lookup_nodes
 );
 

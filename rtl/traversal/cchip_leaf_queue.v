@@ -11,38 +11,47 @@
 //   capacity     DEPTH entries; the sender counts them: m_room = 1 when one has left
 //   cuts         every path: each output is a flip-flop
 //   reset        empty, all credit back
+//   timing       5 clocks from s_valid of an empty queue to m_valid. m_valid stays until m_ready. A
+//                pair is judged when it is next, on the clock before it is offered: one whose query
+//                has ended leaves by m_drop, without credit. An entry comes only while fewer than
+//                DEPTH are inside by the sender's count (one more for each, one less for each
+//                m_room), and not on the first clock after reset. Epochs stay through a reset; the
+//                epoch of a context must have been written before its first entry.
+//   numbers      CREDIT after reset, one less for each pair that leaves by m, one more for each
+//                clock with s_credit.
+//   inside       A queue of entries in a cchip_fifo, and a copy of every context's epoch.
+//   why          An entry for a node pair instead of 16 for its pairs: room is reserved for one
+//                thing.
 module cchip_leaf_queue #(
-    // queries at once: 2, 4, 8 or 16
-    parameter integer QUERIES = 16,
-    // entries, 1..1024
-    parameter integer DEPTH = 72,
-    // pairs that the receiver has room for, 1..65535
-    parameter integer CREDIT = 32
+    parameter integer QUERIES = 16,  // queries at once (query); legal: 2, 4, 8, 16
+    parameter integer DEPTH = 72,    // capacity (entry); legal: 1..1024
+    parameter integer CREDIT = 32    // leaf pairs that the receiver has room for; legal: 1..65535
 ) (
-    input  wire                       clk,
-    input  wire                       rst,
-    // the leaf pairs among the children of a node pair: i of A and j of B is bit 4 i + j
-    input  wire                       s_valid,
-    input  wire [$clog2(QUERIES)-1:0] s_context,
-    input  wire [                1:0] s_epoch,
-    input  wire [               39:0] s_a,        // {kinds of the children, line of the first}
-    input  wire [               39:0] s_b,
+    input  wire                       clk,            // clock, rising edge
+    input  wire                       rst,            // synchronous reset, active high
+    // ---- the leaf pairs among the children of a node pair: i of A and j of B is bit 4 i + j
+    input  wire                       s_valid,        // a node pair with leaf pairs
+    input  wire [$clog2(QUERIES)-1:0] s_context,      // context of its query
+    input  wire [                1:0] s_epoch,        // epoch of the query
+    input  wire [               39:0] s_a,  // {kinds of the children of A, line of the first}
+    input  wire [               39:0] s_b,            // the same of B
+    // leaf pairs among the children, as s_verdict_leaves
     input  wire [               15:0] s_leaves,
-    output wire                       m_room,
-    // epochs as they change
-    input  wire                       epoch_write,
-    input  wire [$clog2(QUERIES)-1:0] epoch_context,
-    input  wire [                1:0] epoch,
-    // a pair to fetch, or to drop
-    input  wire                       s_credit,
-    output wire                       m_valid,
-    input  wire                       m_ready,
-    output wire                       m_drop_valid,
-    input  wire                       m_drop_ready,
-    output wire [$clog2(QUERIES)-1:0] m_context,
-    output wire [                1:0] m_epoch,
-    output wire [                3:0] m_kinds,    // {B's, A's}
-    output wire [               63:0] m_lines     // {B's, A's}
+    output wire                       m_room,         // an entry has left
+    // ---- epochs as they change
+    input  wire                       epoch_write,    // an epoch changes
+    input  wire [$clog2(QUERIES)-1:0] epoch_context,  // of this context
+    input  wire [                1:0] epoch,          // to this
+    // ---- a pair to fetch, or to drop
+    input  wire                       s_credit,  // the receiver has room for one more leaf pair
+    output wire                       m_valid,        // a pair to fetch
+    input  wire                       m_ready,        // it is taken
+    output wire                       m_drop_valid,   // a pair of a query that has ended
+    input  wire                       m_drop_ready,   // it is taken
+    output wire [$clog2(QUERIES)-1:0] m_context,      // context of the query
+    output wire [                1:0] m_epoch,        // epoch of the query
+    output wire [                3:0] m_kinds,        // kinds of the leaves, {B's, A's}
+    output wire [               63:0] m_lines         // numbers of the lines, {B's, A's}
 );
 
   localparam integer CONTEXT_W = $clog2(QUERIES);

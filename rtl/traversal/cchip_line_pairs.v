@@ -16,38 +16,49 @@
 //   credit       a place is used again only after its pair has left its queue
 //   cuts         every path: each output is a flip-flop
 //   reset        no line of before may come; the queues are empty
+//   rules        Each line comes once.
+//   inside       Of each place one bit, which every line inverts: a second line finds it 1. For
+//                each port a cchip_block_ram of lines and another one of the lines of leaf pairs,
+//                which is written 256 bits wide and read 64, the codes in LUT memory, and two
+//                cchip_fifo.
 module cchip_line_pairs #(
-    // node pairs in flight: places 0..PAIRS-1
-    parameter integer PAIRS   = 48,
-    // leaf pairs in flight: the places behind them
-    parameter integer LEAVES  = 16,
-    // width of a place, bit: PAIRS + LEAVES is 2^PLACE_W
+    parameter integer PAIRS   = 48,  // node pairs in flight: places 0 .. PAIRS - 1; legal: 1..63
+    parameter integer LEAVES  = 16,  // leaf pairs in flight: the places behind them; legal: 1..63
+    // width of the number of a pair (bit); legal: 3..6; PAIRS + LEAVES is 2^PLACE_W
     parameter integer PLACE_W = 6
 ) (
-    input  wire                            clk,
-    input  wire                            rst,
-    // lines, {B's, A's}; on the clock after 1, s_valid is 0
+    input  wire                            clk,           // clock, rising edge
+    input  wire                            rst,           // synchronous reset, active high
+    // ---- lines, {B's, A's}; on the clock after 1, s_valid is 0
+    // bit p: a line comes through port p, 0: of A, 1: of B
     input  wire [                     1:0] s_valid,
-    input  wire [           2*PLACE_W-1:0] s_place,
+    input  wire [           2*PLACE_W-1:0] s_place,       // place of its pair
+    // outcome of its read (ReadCode, docs/hardware/definitions.md)
     input  wire [2*`CCHIP_READ_CODE_W-1:0] s_code,
+    // a half of the line, {B's, A's}: the lower one with s_valid, the upper one on the next clock,
+    // on which s_place stays
     input  wire [                   511:0] s_data,
-    // pairs that are complete, in the queue of each port
+    // ---- pairs that are complete, in the queue of each port
+    // bit p: a node pair waits in the queue of port p
     output wire [                     1:0] m_pair_valid,
-    input  wire [                     1:0] m_pair_take,
-    output wire [           2*PLACE_W-1:0] m_pair_place,
+    input  wire [                     1:0] m_pair_take,   // bit p: it is accepted
+    output wire [           2*PLACE_W-1:0] m_pair_place,  // its place
+    // bit p: a leaf pair waits in the queue of port p
     output wire [                     1:0] m_leaf_valid,
-    input  wire [                     1:0] m_leaf_take,
-    output wire [           2*PLACE_W-1:0] m_leaf_place,
-    // halves of the lines of a node pair, {B's, A's}
-    input  wire [             PLACE_W-1:0] read_place,
+    input  wire [                     1:0] m_leaf_take,   // bit p: it is accepted
+    output wire [           2*PLACE_W-1:0] m_leaf_place,  // its place
+    // ---- halves of the lines of a node pair, {B's, A's}
+    input  wire [             PLACE_W-1:0] read_place,    // place of a pair whose lines are wanted
+    // the halves that are wanted: 0 lower, 1 upper
     input  wire                            read_beat,
-    output wire [                   511:0] read_lines,
-    output wire [2*`CCHIP_READ_CODE_W-1:0] read_codes,
-    // eighths of the lines of a leaf pair, {B's, A's}
+    output wire [                   511:0] read_lines,    // halves of its lines, {B's, A's}
+    output wire [2*`CCHIP_READ_CODE_W-1:0] read_codes,    // outcomes of their reads
+    // ---- eighths of the lines of a leaf pair, {B's, A's}
+    // place of a leaf pair whose lines are wanted
     input  wire [             PLACE_W-1:0] leaf_place,
-    input  wire [                     2:0] leaf_beat,
-    output wire [                   127:0] leaf_lines,
-    output wire [2*`CCHIP_READ_CODE_W-1:0] leaf_codes
+    input  wire [                     2:0] leaf_beat,  // the eighths that are wanted, 0: the lowest
+    output wire [                   127:0] leaf_lines,    // eighths of its lines, {B's, A's}
+    output wire [2*`CCHIP_READ_CODE_W-1:0] leaf_codes     // outcomes of their reads
 );
 
   localparam integer PLACES = 1 << PLACE_W;

@@ -15,25 +15,34 @@
 //   throughput   a pair every second clock
 //   cuts         every path: each output is a flip-flop
 //   reset        nothing inside; what is kept is unknown until it has been written
+//   rules        A line of A could not be read (MEMORY); of two headers one has another magic or
+//                version (BAD_DESCRIPTOR); what is wrong with A's line; what is wrong with B's.
+//                Wrong with a line may be: it could not be read (MEMORY). The extent of a node is
+//                above 18 or the box of a child inverted, greatest < least (CORRUPT). A child lies
+//                not behind its node or outside the image, or the root of a header does (OUTSIDE).
+//   inside       The fields on the first clock, compared on the second, judged on the third.
 module cchip_node_check #(
-    // queries at once: 2, 4, 8 or 16
-    parameter integer QUERIES = 16,
-    // width of the number of a pair, bit
-    parameter integer PLACE_W = 6
+    parameter integer QUERIES = 16,  // queries at once (query); legal: 2, 4, 8, 16
+    parameter integer PLACE_W = 6    // width of the number of a pair (bit); legal: 3..6
 ) (
-    input  wire                       clk,
-    input  wire                       rst,
-    // a pair of lines, {B's, A's} each
-    input  wire                       s_valid,
-    input  wire [        PLACE_W-1:0] s_place,
-    input  wire [$clog2(QUERIES)-1:0] s_context,
+    input  wire                       clk,           // clock, rising edge
+    input  wire                       rst,           // synchronous reset, active high
+    // ---- a pair of lines, {B's, A's} each
+    input  wire                       s_valid,       // a pair of lines
+    input  wire [        PLACE_W-1:0] s_place,       // its place
+    input  wire [$clog2(QUERIES)-1:0] s_context,     // context of its query
     input  wire                       s_header,      // two headers, not two nodes
-    input  wire [               47:0] s_numbers,     // numbers of the lines in their images
-    input  wire [                1:0] s_failed,      // a line could not be read
-    input  wire [              511:0] s_lines,       // a beat
-    // record NODES of a pair
-    input  wire                       lookup,
-    input  wire [        PLACE_W-1:0] lookup_place,
+    // numbers of the lines in their images, {B's, A's}
+    input  wire [               47:0] s_numbers,
+    // bit p: the line of A (0), of B (1) could not be read
+    input  wire [                1:0] s_failed,
+    // halves of the lines, {B's, A's}: the lower ones with s_valid, the upper ones on the next
+    // clock
+    input  wire [              511:0] s_lines,
+    // ---- record NODES of a pair
+    input  wire                       lookup,        // a verdict has come
+    input  wire [        PLACE_W-1:0] lookup_place,  // place of its pair
+    // record NODES (definitions, docs/hardware/definitions.md), a clock later
     output wire [ `CCHIP_NODES_W-1:0] lookup_nodes
 );
 

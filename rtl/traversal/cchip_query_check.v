@@ -11,16 +11,17 @@
 //   cuts         every path: each output is a flip-flop, waits two of them
 //   reset        no query
 module cchip_query_check (
-    input  wire                     clk,
-    input  wire                     rst,
-    input  wire                     s_valid,
-    output wire                     s_ready,
+    input  wire                     clk,       // clock, rising edge
+    input  wire                     rst,       // synchronous reset, active high
+    input  wire                     s_valid,   // a query
+    output wire                     s_ready,   // it is accepted if s_valid = 1 as well
+    // record QUERY (definitions, docs/hardware/definitions.md)
     input  wire [`CCHIP_QUERY_W-1:0] s_query,
-    output wire                     waits,    // query and bad hold: it may start
-    output wire [`CCHIP_QUERY_W-1:0] query,
-    output wire                     bad,
-    input  wire                     tried,    // a start of it has left the pipeline
-    input  wire                     started   // and it has started: the next one may come
+    output wire                     waits,     // query and bad hold: it may start
+    output wire [`CCHIP_QUERY_W-1:0] query,    // the query
+    output wire                     bad,       // it is illegal and ends with BAD_DESCRIPTOR
+    input  wire                     tried,     // an attempt to start it has left the pipeline
+    input  wire                     started    // and it has started: the next one may come
 );
 
   reg valid_q, ready_q, bad_q, judging_q, judged_q;

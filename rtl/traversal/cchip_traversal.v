@@ -18,89 +18,101 @@
 //   cuts         every path: each output depends on flip-flops only
 //   reset        drops all queries; takes 4 QUERIES clocks, events wait
 module cchip_traversal #(
-    // queries at once: 2, 4, 8 or 16
-    parameter integer QUERIES = 16,
-    // node pairs in flight
-    parameter integer PAIRS = 48,
-    // leaf pairs that are fetched at once; PAIRS + LEAVES is 8, 16, 32 or 64
+    parameter integer QUERIES = 16,     // queries at once (query); legal: 2, 4, 8, 16
+    parameter integer PAIRS = 48,       // node pairs in flight; legal: with LEAVES 8, 16, 32 or 64
+    // leaf pairs that are fetched at once; legal: >= 1; PAIRS + LEAVES is 8, 16, 32 or 64
     parameter integer LEAVES = 16,
-    // entries of a query's stack: 8, 16, 32 or 64
-    parameter integer STACK = 64,
-    // entries of the leaf queue, more than PAIRS
-    parameter integer LEAF_DEPTH = 72,
-    // leaf pairs that the receiver has room for
-    parameter integer CREDIT = 32
+    parameter integer STACK = 64,       // stack of a query (entry); legal: 8, 16, 32, 64
+    parameter integer LEAF_DEPTH = 72,  // queue of leaves (entry); legal: PAIRS + 1 .. 128
+    parameter integer CREDIT = 32  // leaf pairs that the receiver has room for; legal: 1..65535
 ) (
-    input  wire                            clk,
-    input  wire                            rst,
-    // limits; they may change on any clock, and count for the queries at work too.
-    // node pairs of a query in flight, 0..7; 0 counts as 1; half of it with leaf pairs out
+    input  wire                            clk,                // clock, rising edge
+    input  wire                            rst,                // synchronous reset, active high
+    // ---- limits; they may change on any clock, and count for the queries at work too. node pairs
+    //      of a query in flight, 0..7; 0 counts as 1; half of it with leaf pairs out
+    // node pairs of a query that may be in flight, 0..7; 0 counts as 1; half of it for a query for
+    // the first hit with leaf pairs out
     input  wire [                     2:0] pairs_each,
-    // node pairs of a query, 0..2^32 - 1; 0: it ends with code STEPS at its first one
+    // ---- node pairs of a query, 0..2^32 - 1; 0: it ends with code STEPS at its first one
+    // node pairs after which a query ends with code steps, 0..2^32 - 1
     input  wire [                    31:0] step_limit,
-    // open pairs of a FIRST query, 0..255; 0 counts as 1
+    // open pairs after which a query for the first hit ends with code host, 0..255; 0 counts as 1
     input  wire [                     7:0] open_limit,
-    // queries (docs/hardware/image.md)
-    input  wire                            s_query_valid,
-    output wire                            s_query_ready,
+    // ---- queries (docs/hardware/image.md)
+    input  wire                            s_query_valid,      // a query
+    output wire                            s_query_ready,      // it is taken
+    // its line (image.md, docs/hardware/image.md, "Query")
     input  wire [                   511:0] s_query,
-    // one that has started, for the box test and the transform, which need its pose. Not a stream:
-    // m_start_ready = 1 says that the receivers have room for one more, m_start_valid is a pulse
-    // some clocks later, even if m_start_ready is 0 then. The next one comes later still
-    output wire                            m_start_valid,
-    input  wire                            m_start_ready,
-    output wire [     $clog2(QUERIES)-1:0] m_start_context,
-    output wire [                     1:0] m_start_epoch,
-    output wire [                   511:0] m_start_query,
-    // lines for a place of cchip_get_data; always taken
-    output wire                            m_valid,
-    output wire [$clog2(PAIRS+LEAVES)-1:0] m_place,
-    output wire [     $clog2(QUERIES)-1:0] m_context,
+    // ---- one that has started, for the box test and the transform, which need its pose. Not a
+    //      stream: m_start_ready = 1 says that the receivers have room for one more, m_start_valid
+    //      is a pulse some clocks later, even if m_start_ready is 0 then. The next one comes later
+    //      still
+    output wire                            m_start_valid,      // a query has started, one clock
+    input  wire                            m_start_ready,  // room for one more query, see Timing
+    output wire [     $clog2(QUERIES)-1:0] m_start_context,    // its context
+    output wire [                     1:0] m_start_epoch,      // its epoch
+    output wire [                   511:0] m_start_query,      // its line
+    // ---- lines for a place of cchip_get_data; always taken
+    output wire                            m_valid,            // the lines of a pair are wanted
+    output wire [$clog2(PAIRS+LEAVES)-1:0] m_place,            // place for them
+    output wire [     $clog2(QUERIES)-1:0] m_context,          // context of the query
+    // what is to come back with the verdict: {header, epoch, children of B, line of B, children of
+    // A, line of A}; of leaves {0, epoch, 0, kind of B, 0, kind of A}
     output wire [                    58:0] m_record,
-    output wire [                    63:0] m_lines,
-    // a leaf pair has left there
-    input  wire                            s_leaf_valid,
-    input  wire [$clog2(PAIRS+LEAVES)-1:0] s_leaf_place,
-    // verdicts of cchip_bv_unit, and what cchip_get_data knows of the node pair
-    input  wire                            s_verdict_valid,
-    input  wire [$clog2(PAIRS+LEAVES)-1:0] s_verdict_place,
+    output wire [                    63:0] m_lines,            // numbers of the lines, {B's, A's}
+    // ---- a leaf pair has left there
+    input  wire                            s_leaf_valid,  // a leaf pair has left cchip_get_data
+    input  wire [$clog2(PAIRS+LEAVES)-1:0] s_leaf_place,       // its place, free again
+    // ---- verdicts of cchip_bv_unit, and what cchip_get_data knows of the node pair
+    input  wire                            s_verdict_valid,    // verdict of the box test
+    input  wire [$clog2(PAIRS+LEAVES)-1:0] s_verdict_place,    // place of its node pair
+    // child pairs that overlap and are not both leaves; child i of A and j of B is bit 4 i + j
     input  wire [                    15:0] s_verdict_waiting,
-    input  wire [                    15:0] s_verdict_leaves,
+    input  wire [                    15:0] s_verdict_leaves,   // those that are
+    // of the waiting ones those that overlap much
     input  wire [                    15:0] s_verdict_strong,
+    // of the waiting ones that which overlaps most
     input  wire [                     3:0] s_verdict_best,
-    input  wire [                     4:0] s_verdict_tests,
-    output wire                            lookup,
-    output wire [$clog2(PAIRS+LEAVES)-1:0] lookup_place,
-    input  wire [     $clog2(QUERIES)-1:0] lookup_context,
-    input  wire [                    58:0] lookup_record,
+    input  wire [                     4:0] s_verdict_tests,    // child pairs compared
+    output wire                            lookup,             // read what is known of this place
+    output wire [$clog2(PAIRS+LEAVES)-1:0] lookup_place,       // place of a node pair
+    input  wire [     $clog2(QUERIES)-1:0] lookup_context,     // its context
+    input  wire [                    58:0] lookup_record,      // its record
+    // {code, kinds of B's children, line of the first, kinds of A's, line of the first}; of headers
+    // the roots
     input  wire [                    66:0] lookup_nodes,
-    // outcome of a leaf pair, and room for another one
-    input  wire                            s_result_valid,
-    output wire                            s_result_ready,
-    input  wire [     $clog2(QUERIES)-1:0] s_result_context,
-    input  wire [                     1:0] s_result_epoch,
+    // ---- outcome of a leaf pair, and room for another one
+    input  wire                            s_result_valid,     // outcome of a leaf pair
+    output wire                            s_result_ready,     // it is taken
+    input  wire [     $clog2(QUERIES)-1:0] s_result_context,   // context of its query
+    input  wire [                     1:0] s_result_epoch,     // epoch of its query
     input  wire [                     2:0] s_result_hits,      // definite hits, 0..4
-    input  wire [                     2:0] s_result_open,      // others
+    input  wire [                     2:0] s_result_open,      // hits that are not definite, 0..4
+    // 0, or the code with which the query is to end
     input  wire [                     2:0] s_result_code,
+    // the receiver has room for one more leaf pair
     input  wire                            s_credit,
-    // of each result, in the order of s_result: was its query still at work? On the clock on which
-    // the end that it may bring about enters the queue of m_done, which it leaves a clock later at
-    // the earliest
+    // ---- of each result, in the order of s_result: was its query still at work? On the clock on
+    //      which the end that it may bring about enters the queue of m_done, which it leaves a
+    //      clock later at the earliest
+    // judgement of a result, in the order of s_result
     output wire                            m_judged_valid,
-    output wire                            m_judged_live,
-    output wire [                    31:0] m_judged_tag,
-    // queries that have ended
-    output wire                            m_done_valid,
-    input  wire                            m_done_ready,
-    output wire [                    31:0] m_done_tag,
+    output wire                            m_judged_live,      // its query was still at work
+    output wire [                    31:0] m_judged_tag,       // tag of that query
+    // ---- queries that have ended
+    output wire                            m_done_valid,       // a query has ended
+    input  wire                            m_done_ready,       // its answer is taken
+    output wire [                    31:0] m_done_tag,         // tag of the query
+    // how it ended: 0 ok, 1 for the host, 2 step limit, 3 full stack, 4 corrupt line, 5 line
+    // outside, 6 bad descriptor, 7 memory
     output wire [                     2:0] m_done_code,
-    output wire [                     1:0] m_done_answer,      // no, yes, open
-    output wire [                    31:0] m_done_steps,
-    output wire [                    31:0] m_done_pairs,
-    // what happens on this clock, for counters
-    output wire                            count_step,
-    output wire [                     4:0] count_tests,
-    output wire                            count_leaf_pair
+    output wire [                     1:0] m_done_answer,      // 0 no, 1 yes, 2 open
+    output wire [                    31:0] m_done_steps,       // node pairs expanded
+    output wire [                    31:0] m_done_pairs,       // hits
+    // ---- what happens on this clock, for counters
+    output wire                            count_step,         // a node pair was expanded
+    output wire [                     4:0] count_tests,        // child pairs compared
+    output wire                            count_leaf_pair     // a leaf pair is fetched
 );
 
   localparam integer PLACE_W = $clog2(PAIRS + LEAVES);

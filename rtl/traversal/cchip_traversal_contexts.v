@@ -12,45 +12,46 @@
 //   throughput   an event per clock
 //   cuts         every path: each output is a flip-flop, or the output of a block RAM
 //   reset        every context and every epoch is cleared, in 4 QUERIES clocks: running = 0
+//   inside       States, constants and works in LUT memory; the stacks of all contexts in one
+//                cchip_block_ram.
 module cchip_traversal_contexts #(
-    // queries at once: 2, 4, 8 or 16
-    parameter integer QUERIES = 16,
-    // entries of a query's stack: 8, 16, 32 or 64
-    parameter integer STACK   = 64,
-    // width of the count of what an epoch has in flight, bit
+    parameter integer QUERIES = 16,  // queries at once (query); legal: 2, 4, 8, 16
+    parameter integer STACK   = 64,  // entries of a query's stack (entry); legal: 8, 16, 32, 64
+    // width of the count of what an epoch has in flight (bit); legal: >= 1
     parameter integer WORK_W  = 12
 ) (
-    input  wire                              clk,
-    input  wire                              rst,
-    output wire                              running,
-    input  wire [                      31:0] step_limit,
-    // an event in stage 1
-    input  wire [       $clog2(QUERIES)-1:0] s_context,
-    input  wire [                       1:0] s_epoch,
-    input  wire                              s_own,          // it is one of the query as it is
-    // stage 5
-    output wire [                       1:0] epoch5,         // the event's; if s_own, the query's
-    output wire                              live5,          // its query is still at work
-    output wire [          $clog2(STACK)+80:0] state5,         // record QUERY_STATE
-    output wire [  `CCHIP_QUERY_LINES_W-1:0] constants5,
-    output wire [                WORK_W-1:0] work5,          // what its epoch has in flight
-    output wire                              over5,          // steps have reached their limit
-    output wire                              full5,          // the stack is full
-    output wire [  `CCHIP_STACK_ENTRY_W-1:0] entry5,         // last of the stack
-    // stage 8
-    input  wire                              write8,
-    input  wire [       $clog2(QUERIES)-1:0] context8,
-    input  wire [                       1:0] epoch8,
-    input  wire [          $clog2(STACK)+80:0] state8,
-    input  wire [  `CCHIP_QUERY_LINES_W-1:0] constants8,
-    input  wire [                WORK_W-1:0] work8,
-    input  wire                              push8,          // an entry of the stack
-    input  wire [         $clog2(STACK)-1:0] at8,
-    input  wire [  `CCHIP_STACK_ENTRY_W-1:0] entry8,
-    // the epoch that a context has from the next clock on
-    output wire                              epoch_write,
-    output wire [       $clog2(QUERIES)-1:0] epoch_context,
-    output wire [                       1:0] epoch
+    input  wire                              clk,            // clock, rising edge
+    input  wire                              rst,            // synchronous reset, active high
+    output wire                              running,        // 0: contexts are being cleared
+    input  wire [                      31:0] step_limit,     // node pairs of a query
+    input  wire [       $clog2(QUERIES)-1:0] s_context,      // context of an event in stage 1
+    input  wire [                       1:0] s_epoch,        // epoch of the event
+    // the event is one of the query as it is: a start or a pop
+    input  wire                              s_own,
+    // epoch of the event in stage 5; with s_own that of the query
+    output wire [                       1:0] epoch5,
+    output wire                              live5,  // the query of that epoch is still at work
+    // record QUERY_STATE (definitions, docs/hardware/definitions.md)
+    output wire [          $clog2(STACK)+80:0] state5,
+    output wire [  `CCHIP_QUERY_LINES_W-1:0] constants5,     // record QUERY_LINES
+    // node pairs and leaf pairs that its epoch has in flight
+    output wire [                WORK_W-1:0] work5,
+    output wire                              over5,  // the query's steps have reached step_limit
+    output wire                              full5,          // its stack is full
+    output wire [  `CCHIP_STACK_ENTRY_W-1:0] entry5,  // last entry of its stack, record STACK_ENTRY
+    input  wire                              write8,         // an event in stage 8
+    input  wire [       $clog2(QUERIES)-1:0] context8,       // its context
+    input  wire [                       1:0] epoch8,         // its epoch
+    input  wire [          $clog2(STACK)+80:0] state8,       // the state to write
+    input  wire [  `CCHIP_QUERY_LINES_W-1:0] constants8,     // the constants to write
+    input  wire [                WORK_W-1:0] work8,          // the work of its epoch to write
+    input  wire                              push8,          // an entry is pushed
+    input  wire [         $clog2(STACK)-1:0] at8,            // its place on the stack
+    input  wire [  `CCHIP_STACK_ENTRY_W-1:0] entry8,         // the entry
+    // ---- the epoch that a context has from the next clock on
+    output wire                              epoch_write,    // a context gets an epoch
+    output wire [       $clog2(QUERIES)-1:0] epoch_context,  // this context
+    output wire [                       1:0] epoch           // this epoch
 );
 
   localparam integer CONTEXT_W = $clog2(QUERIES);

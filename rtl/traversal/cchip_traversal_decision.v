@@ -14,72 +14,94 @@
 //   cuts         every path: each output is a flip-flop
 //   reset        drops the events inside. Without an event all outputs that say what happens
 //                are 0
+//   parameters   cchip_traversal checks them.
+//   timing       All outputs three clocks after the event, but m_started after one.
+//   numbers      The best child pair of a verdict continues in its parent's place if there is room
+//                for its leaves; else all wait, it among the strong ones. From the stack the lowest
+//                number goes, of the strong ones if there are some. A child that is a leaf
+//                continues as its parent's line with a mask of one child. Any query ends with the
+//                code of a line or of a result, with the step limit, with a full stack, and with 0
+//                when nothing is in flight or on the stack. Events of a query that has ended change
+//                the work of their epoch only.
+//   why          One module decides everything about a query, from registers to registers: it can
+//                be tested with any state, one event at a time.
 module cchip_traversal_decision #(
-    // entries of a query's stack: 8, 16, 32 or 64
-    parameter integer STACK  = 64,
-    // width of the count of what an epoch has in flight, bit
+    parameter integer STACK  = 64,  // entries of a query's stack (entry); legal: 8, 16, 32, 64
+    // width of the count of what an epoch has in flight (bit); legal: 6..16
     parameter integer WORK_W = 12
 ) (
-    input  wire                      clk,
-    input  wire                      rst,
-    input  wire [               2:0] pairs_each,       // 0..7
-    input  wire [               7:0] open_limit,       // 0..255
-    // an event, one of four
-    input  wire                      s_valid,
-    input  wire                      s_is_verdict,
-    input  wire                      s_is_result,
-    input  wire                      s_is_start,
-    input  wire                      s_is_pop,
-    input  wire [               1:0] s_epoch,
-    input  wire                      s_live,           // its query is still at work
-    // the query: records QUERY_STATE and QUERY_LINES
+    input  wire                      clk,                    // clock, rising edge
+    input  wire                      rst,                    // synchronous reset, active high
+    // node pairs of a query that may be in flight, 0..7; 0 counts as 1; half of it for a query for
+    // the first hit with leaf pairs out
+    input  wire [               2:0] pairs_each,
+    // open pairs after which a query for the first hit ends with code host, 0..255; 0 counts as 1
+    input  wire [               7:0] open_limit,
+    input  wire                      s_valid,                // an event, one of four
+    input  wire                      s_is_verdict,           // a verdict on a node pair
+    input  wire                      s_is_result,            // a result of a leaf pair
+    input  wire                      s_is_start,             // a query starts
+    input  wire                      s_is_pop,               // a node pair leaves the stack
+    input  wire [               1:0] s_epoch,                // its epoch
+    input  wire                      s_live,                 // its query is still at work
+    // ---- the query: records QUERY_STATE and QUERY_LINES
+    // {epoch, has a query, mode, entries of the stack, node pairs in flight, steps, hits and open
+    // pairs, open pairs, hit}
     input  wire [$clog2(STACK)+80:0] s_state,
-    input  wire [`CCHIP_QUERY_LINES_W-1:0] s_constants,
-    input  wire [        WORK_W-1:0] s_work,           // what the epoch has in flight
-    input  wire                      s_over,           // steps have reached their limit
-    input  wire                      s_full,           // the stack is full
-    // a verdict: record BOX_VERDICT
-    input  wire [`CCHIP_BOX_VERDICT_W-1:0] s_verdict,
-    input  wire                      s_some_wait,      // waiting is not 0
-    input  wire                      s_rest,           // nor is it without the best
-    input  wire                      s_some_leaves,    // leaves is not 0
-    input  wire [               4:0] s_leaves,         // how many
-    input  wire                      s_extra,          // it has further room in the leaf queue
-    input  wire                      s_room,           // for its leaves and those of the next one
-    // its node pair, and what the lines say: records NODE_PAIR and NODES
-    input  wire [`CCHIP_NODE_PAIR_W-1:0] s_record,
-    input  wire [`CCHIP_NODES_W-1:0] s_nodes,
-    input  wire                      s_failed,         // its code is not 0
-    input  wire [               8:0] s_result,         // {code, open, hits}
-    // last of the stack: record STACK_ENTRY
+    input  wire [`CCHIP_QUERY_LINES_W-1:0] s_constants,      // {tag, line of B, line of A}
+    input  wire [        WORK_W-1:0] s_work,  // node pairs and leaf pairs of the epoch
+    input  wire                      s_over,                 // steps are at their limit
+    input  wire                      s_full,                 // the stack is full
+    // ---- a verdict: record BOX_VERDICT
+    input  wire [`CCHIP_BOX_VERDICT_W-1:0] s_verdict,  // {tests, best, strong, leaves, waiting}
+    input  wire                      s_some_wait,            // waiting is not 0
+    input  wire                      s_rest,                 // nor is it without the best
+    input  wire                      s_some_leaves,          // leaves is not 0
+    input  wire [               4:0] s_leaves,               // how many
+    input  wire                      s_extra,  // it has further room in the leaf queue
+    // there is room for its leaves and those of the next one
+    input  wire                      s_room,
+    // ---- its node pair, and what the lines say: records NODE_PAIR and NODES
+    input  wire [`CCHIP_NODE_PAIR_W-1:0] s_record,  // the node pair, as m_record of cchip_traversal
+    input  wire [`CCHIP_NODES_W-1:0] s_nodes,  // what its lines say, as lookup_nodes there
+    input  wire                      s_failed,               // with a code
+    input  wire [               8:0] s_result,               // {code, open pairs, definite hits}
+    // ---- last of the stack: record STACK_ENTRY
+    // last entry of the stack: {others wait besides the first, number of the child pair that a pop
+    // takes first, strong, waiting, B, A}, of each {children that are nodes, first child, node}
     input  wire [`CCHIP_STACK_ENTRY_W-1:0] s_entry,
-    // the query that starts
-    input  wire                      query_bad,
-    input  wire                      query_mode,
-    input  wire [`CCHIP_QUERY_LINES_W-1:0] query_constants,
-    // what is written, and what comes of it
-    output wire [$clog2(STACK)+80:0] m_state,
-    output wire [`CCHIP_QUERY_LINES_W-1:0] m_constants,
-    output wire [        WORK_W-1:0] m_work,
-    output wire                      m_active,         // the context has a query
-    output wire                      m_wants,          // that may have another node pair in flight
-    output wire                      m_start,          // it was a start,
-    output wire                      m_cancel,         // too early for this context
-    output wire                      m_started,        // a start that goes well, two clocks before
-    output wire                      m_goes,           // a node pair goes to its place,
-    output wire [`CCHIP_NODE_PAIR_W-1:0] m_record,     // this one
-    output wire                      m_back,           // its place is free
-    output wire [               1:0] m_room,           // entries of the leaf queue that are free
-    output wire                      m_push,           // an entry of the stack
-    output wire [ $clog2(STACK)-1:0] m_at,
-    output wire [`CCHIP_STACK_ENTRY_W-1:0] m_entry,
-    output wire                      m_leaf,           // an entry of the leaf queue
+    // ---- the query that starts
+    input  wire                      query_bad,              // of a start: the descriptor is bad
+    input  wire                      query_mode,             // its mode
+    input  wire [`CCHIP_QUERY_LINES_W-1:0] query_constants,  // {tag, line of B, line of A}
+    // ---- what is written, and what comes of it
+    output wire [$clog2(STACK)+80:0] m_state,                // the query afterwards
+    output wire [`CCHIP_QUERY_LINES_W-1:0] m_constants,      // the same
+    output wire [        WORK_W-1:0] m_work,                 // work of the epoch afterwards
+    output wire                      m_active,               // the context has a query
+    output wire                      m_wants,                // of whose stack a node pair may go
+    output wire                      m_start,                // it was a start
+    // whose context has work in flight; too early for this context
+    output wire                      m_cancel,
+    // that went well; a start that goes well, two clocks before
+    output wire                      m_started,
+    output wire                      m_goes,                 // a node pair goes to the box test
+    output wire [`CCHIP_NODE_PAIR_W-1:0] m_record,           // this one
+    output wire                      m_back,                 // the place is free
+    output wire [               1:0] m_room,  // entries of the leaf queue that are free
+    output wire                      m_push,                 // an entry is written
+    output wire [ $clog2(STACK)-1:0] m_at,                   // there
+    output wire [`CCHIP_STACK_ENTRY_W-1:0] m_entry,          // as s_entry
+    output wire                      m_leaf,                 // leaf pairs
+    // {kinds of B's children, line of the first, kinds of A's, line of the first}, lines from
+    // address 0
     output wire [              79:0] m_leaf_nodes,
-    output wire [              15:0] m_leaf_set,
-    output wire                      m_ends,           // an answer:
-    output wire [`CCHIP_QUERY_END_W-1:0] m_answer,     // record QUERY_END
-    output wire                      m_step,           // a node pair was expanded
-    output wire [               4:0] m_tests
+    output wire [              15:0] m_leaf_set,             // which pairs
+    output wire                      m_ends,                 // the query ends
+    // {code, answer, steps, pairs}; record QUERY_END
+    output wire [`CCHIP_QUERY_END_W-1:0] m_answer,
+    output wire                      m_step,                 // a node pair was expanded
+    output wire [               4:0] m_tests                 // child pairs compared
 );
 
   localparam integer STACK_W = $clog2(STACK);

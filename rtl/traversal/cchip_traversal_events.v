@@ -19,72 +19,76 @@
 //   cuts         every path: each output depends on flip-flops only
 //   reset        drops all events; all places and all room are free
 module cchip_traversal_events #(
-    // queries at once: 2, 4, 8 or 16
-    parameter integer QUERIES = 16,
-    // node pairs in flight
-    parameter integer PAIRS = 48,
-    // width of a place's number, bit
+    parameter integer QUERIES = 16,     // queries at once (query); legal: 2, 4, 8, 16
+    parameter integer PAIRS = 48,       // places (node pair); legal: 1..256
+    // width of a place's number (bit); legal: wide enough for PAIRS - 1
     parameter integer PLACE_W = 6,
-    // entries of the leaf queue
-    parameter integer LEAF_DEPTH = 72,
-    // answers that may wait
-    parameter integer ANSWERS = 32
+    parameter integer LEAF_DEPTH = 72,  // entries of the leaf queue (entry); legal: >= 1
+    parameter integer ANSWERS = 32      // answers that may wait; legal: 1..65535
 ) (
-    input  wire                        clk,
-    input  wire                        rst,
-    input  wire                        running,          // contexts may take queries
-    // queries (docs/hardware/image.md); the one that waits or is at its start, whether valid
-    input  wire                        s_query_valid,
-    output wire                        s_query_ready,
+    input  wire                        clk,                // clock, rising edge
+    input  wire                        rst,                // synchronous reset, active high
+    input  wire                        running,            // contexts may take queries
+    // ---- queries (docs/hardware/image.md); the one that waits or is at its start, whether valid
+    input  wire                        s_query_valid,      // a query
+    output wire                        s_query_ready,      // it is taken
+    // its line (image.md, docs/hardware/image.md, "Query")
     input  wire [               511:0] s_query,
-    output wire [               511:0] query,
-    output wire                        query_bad,
-    input  wire                        start_ready,      // there is room for its pose
-    // verdicts: {place, tests, best, strong, leaves, waiting}
-    input  wire                        s_verdict_valid,
+    output wire [               511:0] query,  // the query that waits, or is at its start
+    output wire                        query_bad,  // its descriptor is bad; from the third clock on
+    // every receiver of a query's pose has room for one more; m_start_event comes after it
+    input  wire                        start_ready,
+    // ---- verdicts: {place, tests, best, strong, leaves, waiting}
+    input  wire                        s_verdict_valid,    // verdict of the box test
+    // {place, tests, best, strong, leaves, waiting} of a node pair
     input  wire [        PLACE_W+56:0] s_verdict,
-    output wire                        lookup,
-    output wire [         PLACE_W-1:0] lookup_place,
-    input  wire [ $clog2(QUERIES)-1:0] lookup_context,
-    input  wire [                 1:0] lookup_epoch,
-    // results: {context, epoch, code, open, hits}
-    input  wire                        s_result_valid,
-    output wire                        s_result_ready,
+    output wire                        lookup,             // read what is known of lookup_place
+    output wire [         PLACE_W-1:0] lookup_place,       // place of a node pair
+    input  wire [ $clog2(QUERIES)-1:0] lookup_context,  // what was read: context of the node pair
+    input  wire [                 1:0] lookup_epoch,       // its epoch
+    // ---- results: {context, epoch, code, open, hits}
+    input  wire                        s_result_valid,     // outcome of a leaf pair
+    output wire                        s_result_ready,     // it is taken
+    // {context, epoch, code, open pairs, definite hits} of a leaf pair
     input  wire [$clog2(QUERIES)+10:0] s_result,
-    // leaf pairs whose query has ended
-    input  wire                        s_drop_valid,
-    output wire                        s_drop_ready,
-    input  wire [ $clog2(QUERIES)-1:0] s_drop_context,
-    input  wire [                 1:0] s_drop_epoch,
-    // the event; verdict, result and place as far as it has one
-    output wire                        m_valid,
-    output wire                        m_verdict_event,  // what it is: one of these four
-    output wire                        m_result_event,
-    output wire                        m_start_event,
-    output wire                        m_pop_event,      // a node pair leaves the stack
-    output wire                        m_judge,          // a result that came on s_result
-    output wire [ $clog2(QUERIES)-1:0] m_context,
-    output wire [                 1:0] m_epoch,
-    output wire                        m_extra,          // it has further room in the leaf queue
+    // ---- leaf pairs whose query has ended
+    input  wire                        s_drop_valid,       // a leaf pair whose query has ended
+    output wire                        s_drop_ready,       // it is taken
+    input  wire [ $clog2(QUERIES)-1:0] s_drop_context,     // its context
+    input  wire [                 1:0] s_drop_epoch,       // its epoch
+    // ---- the event; verdict, result and place as far as it has one
+    output wire                        m_valid,            // an event
+    output wire                        m_verdict_event,    // it is a verdict
+    output wire                        m_result_event,     // a result, or a dropped pair
+    output wire                        m_start_event,      // the start of a query
+    output wire                        m_pop_event,        // a node pair that leaves a stack
+    // a result that came on s_result, not a dropped leaf pair
+    output wire                        m_judge,
+    output wire [ $clog2(QUERIES)-1:0] m_context,          // its context
+    output wire [                 1:0] m_epoch,            // its epoch, of a verdict or a result
+    // a verdict that has further room in the leaf queue
+    output wire                        m_extra,
+    // place of the node pair; a new one of a start or a stack
     output wire [         PLACE_W-1:0] m_place,
-    output wire [                56:0] m_verdict,
+    output wire [                56:0] m_verdict,          // s_verdict without the place
+    // {code, open pairs, definite hits}; 0 of a dropped pair
     output wire [                 8:0] m_result,
-    // an event leaves the pipeline in two clocks: the next one of its query may ask
+    // ---- an event leaves the pipeline in two clocks: the next one of its query may ask
+    // an event leaves the pipeline in two clocks
     input  wire                        s_leaving_valid,
-    input  wire [ $clog2(QUERIES)-1:0] s_leaving_context,
-    // an event leaves the pipeline
-    input  wire                        s_left_valid,
-    input  wire [ $clog2(QUERIES)-1:0] s_left_context,
-    input  wire                        s_left_active,    // the context has a query
-    input  wire                        s_left_wants,     // whose stack may send a node pair
-    input  wire                        s_left_start,     // it was a query's start,
-    input  wire                        s_left_cancel,    // to be tried with another context
-    input  wire                        s_left_back,      // its place is free
-    input  wire [         PLACE_W-1:0] s_left_place,
-    input  wire [                 1:0] s_left_room,      // entries of the leaf queue it leaves
-    // further room: an entry has left the leaf queue, an answer was taken
-    input  wire                        s_leaf_room,
-    input  wire                        s_answer_room
+    input  wire [ $clog2(QUERIES)-1:0] s_leaving_context,  // its context
+    input  wire                        s_left_valid,       // an event leaves the pipeline
+    input  wire [ $clog2(QUERIES)-1:0] s_left_context,     // its context
+    input  wire                        s_left_active,      // the context has a query
+    input  wire                        s_left_wants,       // of whose stack a node pair may go
+    input  wire                        s_left_start,       // it was a start
+    input  wire                        s_left_cancel,  // that is to be tried with another context
+    input  wire                        s_left_back,        // its place is free
+    input  wire [         PLACE_W-1:0] s_left_place,       // the place
+    input  wire [                 1:0] s_left_room,  // entries of the leaf queue that are free
+    // ---- further room: an entry has left the leaf queue, an answer was taken
+    input  wire                        s_leaf_room,        // an entry has left the leaf queue
+    input  wire                        s_answer_room       // an answer was taken
 );
 
   localparam integer CONTEXT_W = $clog2(QUERIES);

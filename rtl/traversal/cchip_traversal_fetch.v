@@ -10,56 +10,58 @@
 //   throughput   a pair per clock
 //   cuts         every path: each output depends on flip-flops only
 //   reset        the queue is empty, every place is free
+//   inside       cchip_leaf_queue, a cchip_pool of places for leaf pairs, and one output register.
 module cchip_traversal_fetch #(
-    // queries at once: 2, 4, 8 or 16
-    parameter integer QUERIES = 16,
-    // node pairs in flight
-    parameter integer PAIRS = 48,
-    // leaf pairs that are fetched at once; PAIRS + LEAVES is 8, 16, 32 or 64
+    parameter integer QUERIES = 16,     // queries at once (query); legal: 2, 4, 8, 16
+    parameter integer PAIRS = 48,       // node pairs in flight; legal: 1..63
+    // leaf pairs that are fetched at once; legal: 1..63; PAIRS + LEAVES is 8, 16, 32 or 64
     parameter integer LEAVES = 16,
-    // entries of the leaf queue, more than PAIRS
+    // entries of the leaf queue (entry); legal: PAIRS + 1 .. 128
     parameter integer LEAF_DEPTH = 72,
-    // leaf pairs that the receiver has room for
-    parameter integer CREDIT = 32
+    parameter integer CREDIT = 32       // leaf pairs that the receiver has room for; legal: >= 1
 ) (
-    input  wire                            clk,
-    input  wire                            rst,
-    // an event in its last stage
-    input  wire [     $clog2(QUERIES)-1:0] s_context,
-    input  wire [                     1:0] s_epoch,
+    input  wire                            clk,             // clock, rising edge
+    input  wire                            rst,             // synchronous reset, active high
+    input  wire [     $clog2(QUERIES)-1:0] s_context,       // context of an event in its last stage
+    input  wire [                     1:0] s_epoch,         // its epoch
+    // record QUERY_LINES of its query (definitions, docs/hardware/definitions.md)
     input  wire [`CCHIP_QUERY_LINES_W-1:0] s_lines,
     input  wire                            s_goes,          // a node pair goes to its place
-    input  wire [$clog2(PAIRS+LEAVES)-1:0] s_place,
-    input  wire [  `CCHIP_NODE_PAIR_W-1:0] s_record,
-    input  wire                            s_leaf,          // an entry of the leaf queue
-    input  wire [                    79:0] s_leaf_nodes,    // {kinds, line} of B's, of A's children
+    input  wire [$clog2(PAIRS+LEAVES)-1:0] s_place,         // this place
+    input  wire [  `CCHIP_NODE_PAIR_W-1:0] s_record,        // the node pair, record NODE_PAIR
+    input  wire                            s_leaf,          // leaf pairs go into the leaf queue
+    // {kinds, line of the first} of the children of B, of A
+    input  wire [                    79:0] s_leaf_nodes,
+    // bit 4 i + j: child i of A with child j of B
     input  wire [                    15:0] s_leaf_set,
     input  wire                            s_step,          // a node pair was expanded
-    input  wire [                     4:0] s_tests,
-    // the epoch that a context has from the next clock on
-    input  wire                            epoch_write,
-    input  wire [     $clog2(QUERIES)-1:0] epoch_context,
-    input  wire [                     1:0] epoch,
-    input  wire                            s_credit,        // the receiver has room for one more
+    input  wire [                     4:0] s_tests,         // pairs of volumes that were compared
+    // ---- the epoch that a context has from the next clock on
+    input  wire                            epoch_write,     // a context gets an epoch
+    input  wire [     $clog2(QUERIES)-1:0] epoch_context,   // this context
+    input  wire [                     1:0] epoch,           // this epoch
+    // the receiver has room for one more leaf pair
+    input  wire                            s_credit,
     output wire                            leaf_room,       // an entry has left the leaf queue
-    // leaf pairs whose query has ended
-    output wire                            m_drop_valid,
+    // ---- leaf pairs whose query has ended
+    output wire                            m_drop_valid,    // a leaf pair whose query has ended
+    // it is accepted if m_drop_valid = 1 as well
     input  wire                            m_drop_ready,
-    output wire [     $clog2(QUERIES)-1:0] m_drop_context,
-    output wire [                     1:0] m_drop_epoch,
-    // the place of a leaf pair is free again
-    input  wire                            s_back_valid,
-    input  wire [$clog2(PAIRS+LEAVES)-1:0] s_back_place,
-    // lines for a place of cchip_get_data; always taken
-    output wire                            m_valid,
-    output wire [$clog2(PAIRS+LEAVES)-1:0] m_place,
-    output wire [     $clog2(QUERIES)-1:0] m_context,
+    output wire [     $clog2(QUERIES)-1:0] m_drop_context,  // its context
+    output wire [                     1:0] m_drop_epoch,    // its epoch
+    input  wire                            s_back_valid,  // the place of a leaf pair is free again
+    input  wire [$clog2(PAIRS+LEAVES)-1:0] s_back_place,    // this place
+    // ---- lines for a place of cchip_get_data; always taken
+    output wire                            m_valid,         // two lines are wanted; always accepted
+    output wire [$clog2(PAIRS+LEAVES)-1:0] m_place,         // for this place
+    output wire [     $clog2(QUERIES)-1:0] m_context,       // context of the query
+    // record NODE_PAIR; of a leaf pair the kinds of its leaves
     output wire [  `CCHIP_NODE_PAIR_W-1:0] m_record,
-    output wire [                    63:0] m_lines,         // {B's, A's}
-    // what happens on this clock, for counters
-    output wire                            count_step,
-    output wire [                     4:0] count_tests,
-    output wire                            count_leaf_pair
+    output wire [                    63:0] m_lines,         // numbers of the lines, {B's, A's}
+    // ---- what happens on this clock, for counters
+    output wire                            count_step,      // a node pair was expanded
+    output wire [                     4:0] count_tests,     // pairs of volumes compared for it
+    output wire                            count_leaf_pair  // a leaf pair was fetched
 );
 
   localparam integer PLACE_W = $clog2(PAIRS + LEAVES);

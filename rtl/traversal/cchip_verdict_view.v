@@ -8,16 +8,18 @@
 //   cuts         every path: each output is a flip-flop
 //   reset        none: the values count only with the event they belong to
 module cchip_verdict_view (
-    input  wire                            clk,
+    input  wire                            clk,            // clock, rising edge
+    // record BOX_VERDICT (definitions, docs/hardware/definitions.md)
     input  wire [`CCHIP_BOX_VERDICT_W-1:0] s_verdict,
-    input  wire                            s_extra,        // it has further room in the leaf queue
-    output wire [`CCHIP_BOX_VERDICT_W-1:0] m_verdict,
-    output wire                            m_extra,
+    input  wire                            s_extra,  // the event has further room in the leaf queue
+    output wire [`CCHIP_BOX_VERDICT_W-1:0] m_verdict,      // the verdict, 4 clocks later
+    output wire                            m_extra,        // s_extra, 4 clocks later
     output wire                            m_some_wait,    // child pairs wait
-    output wire                            m_rest,         // others than the best
-    output wire                            m_some_leaves,
+    output wire                            m_rest,         // child pairs other than the best wait
+    output wire                            m_some_leaves,  // there are leaf pairs
     output wire [                     4:0] m_leaves,       // how many
-    output wire                            m_room          // for its leaf pairs and the next ones
+    // there is room for its leaf pairs and for those of the node pair that continues
+    output wire                            m_room
 );
 
   wire [`CCHIP_BOX_VERDICT_W-1:0] verdict3;

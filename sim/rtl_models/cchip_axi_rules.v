@@ -23,59 +23,56 @@
 //   reset        nothing is in flight, rst is that of master and bus. Not checked: that memory
 //                answers at all
 module cchip_axi_rules #(
-    // width of an address, bit: 12..64
-    parameter integer ADDRESS_W = 64,
-    // width of the data bus, bit: 32, 64, 128, 256 or 512
-    parameter integer DATA_W = 128,
-    // width of the ID of reads, bit, 1..8; a bus without ID: 1, with inputs 0
+    parameter integer ADDRESS_W = 64,   // width of an address (bit); legal: 12..64
+    parameter integer DATA_W = 128,     // width of the data bus (bit); legal: 32, 64, 128, 256, 512
+    // width of the ID of reads; a bus without ID: 1, with inputs 0 (bit); legal: 1..8
     parameter integer ID_W = 1,
-    // most reads of one ID in flight: 1 or 2; 0: no channels of reads
+    // most reads of one ID in flight; 0: no channels of reads; legal: 0, 1, 2
     parameter integer READS = 1,
-    // most writes in flight; 0: no channels of writes
-    parameter integer WRITES = 16,
-    // most whole bursts of data that are taken before their address
+    parameter integer WRITES = 16,  // most writes in flight; 0: no channels of writes; legal: >= 0
+    // most whole bursts of data that are taken before their address; legal: >= 1
     parameter integer AHEAD = 2,
-    // no burst crosses a multiple of this, bytes: a power of two, at most 4096
+    // no burst crosses a multiple of it (byte); legal: powers of 2 above a beat, up to 4096
     parameter integer BOUNDARY = 4096,
-    // 1: a fault of memory is an assertion, too
-    parameter integer MEMORY = 1
+    parameter integer MEMORY = 1        // 1: a fault of memory is an assertion, too; legal: 0, 1
 ) (
-    input  wire                 clk,
-    input  wire                 rst,
+    input  wire                 clk,            // clock, rising edge
+    input  wire                 rst,            // synchronous reset, active high, of master and bus
+    // 0 on a clock on which memory breaks a rule; from the inputs, no register
     output wire                 memory_ok,
-    input  wire                 m_axi_arvalid,
-    input  wire                 m_axi_arready,
-    input  wire [     ID_W-1:0] m_axi_arid,
-    input  wire [ADDRESS_W-1:0] m_axi_araddr,
-    input  wire [          7:0] m_axi_arlen,
-    input  wire [          2:0] m_axi_arsize,
-    input  wire [          1:0] m_axi_arburst,
-    input  wire [          3:0] m_axi_arcache,
-    input  wire [          2:0] m_axi_arprot,
-    input  wire                 m_axi_rvalid,
-    input  wire                 m_axi_rready,
-    input  wire [     ID_W-1:0] m_axi_rid,
-    input  wire [   DATA_W-1:0] m_axi_rdata,
-    input  wire [          1:0] m_axi_rresp,
-    input  wire                 m_axi_rlast,
-    input  wire                 m_axi_awvalid,
-    input  wire                 m_axi_awready,
-    input  wire                 m_axi_awid,
-    input  wire [ADDRESS_W-1:0] m_axi_awaddr,
-    input  wire [          7:0] m_axi_awlen,
-    input  wire [          2:0] m_axi_awsize,
-    input  wire [          1:0] m_axi_awburst,
-    input  wire [          3:0] m_axi_awcache,
-    input  wire [          2:0] m_axi_awprot,
-    input  wire                 m_axi_wvalid,
-    input  wire                 m_axi_wready,
-    input  wire [   DATA_W-1:0] m_axi_wdata,
-    input  wire [ DATA_W/8-1:0] m_axi_wstrb,
-    input  wire                 m_axi_wlast,
-    input  wire                 m_axi_bvalid,
-    input  wire                 m_axi_bready,
-    input  wire                 m_axi_bid,
-    input  wire [          1:0] m_axi_bresp
+    input  wire                 m_axi_arvalid,  // AXI4
+    input  wire                 m_axi_arready,  // AXI4
+    input  wire [     ID_W-1:0] m_axi_arid,     // AXI4
+    input  wire [ADDRESS_W-1:0] m_axi_araddr,   // AXI4
+    input  wire [          7:0] m_axi_arlen,    // AXI4
+    input  wire [          2:0] m_axi_arsize,   // AXI4
+    input  wire [          1:0] m_axi_arburst,  // AXI4
+    input  wire [          3:0] m_axi_arcache,  // AXI4
+    input  wire [          2:0] m_axi_arprot,   // AXI4
+    input  wire                 m_axi_rvalid,   // AXI4
+    input  wire                 m_axi_rready,   // AXI4
+    input  wire [     ID_W-1:0] m_axi_rid,      // AXI4
+    input  wire [   DATA_W-1:0] m_axi_rdata,    // AXI4
+    input  wire [          1:0] m_axi_rresp,    // AXI4
+    input  wire                 m_axi_rlast,    // AXI4
+    input  wire                 m_axi_awvalid,  // AXI4
+    input  wire                 m_axi_awready,  // AXI4
+    input  wire                 m_axi_awid,     // AXI4
+    input  wire [ADDRESS_W-1:0] m_axi_awaddr,   // AXI4
+    input  wire [          7:0] m_axi_awlen,    // AXI4
+    input  wire [          2:0] m_axi_awsize,   // AXI4
+    input  wire [          1:0] m_axi_awburst,  // AXI4
+    input  wire [          3:0] m_axi_awcache,  // AXI4
+    input  wire [          2:0] m_axi_awprot,   // AXI4
+    input  wire                 m_axi_wvalid,   // AXI4
+    input  wire                 m_axi_wready,   // AXI4
+    input  wire [   DATA_W-1:0] m_axi_wdata,    // AXI4
+    input  wire [ DATA_W/8-1:0] m_axi_wstrb,    // AXI4
+    input  wire                 m_axi_wlast,    // AXI4
+    input  wire                 m_axi_bvalid,   // AXI4
+    input  wire                 m_axi_bready,   // AXI4
+    input  wire                 m_axi_bid,      // AXI4
+    input  wire [          1:0] m_axi_bresp     // AXI4
 );
 
   localparam integer BYTES_LOG2 = $clog2(DATA_W / 8);

@@ -14,20 +14,18 @@
 //   latency      1 clock from a word of the port to garbage and select
 //   reset        none: a configuration survives a reset; RM_ID is the module at power-up
 module cchip_pr_config_memory #(
-    // kinds of pairs, 3, or 4 with points: the modules are 0..KINDS
+    // kinds of pairs, 4 with points against triangles; the modules are 0..KINDS; legal: 3, 4
     parameter integer KINDS = 3,
-    // number of this slot, 0..255
+    // number of this slot, compared with the one in a payload; legal: 0..255
     parameter integer SLOT_ID = 0,
-    // module in the slot at power-up, CCHIP_RM_BLANK .. , 0..KINDS
-    parameter integer RM_ID = 1,
-    // width of the configuration port, bit, 8 or 32
-    parameter integer CFG_W = 8
+    parameter integer RM_ID = 1,    // module at power-up, CCHIP_RM_BLANK on; legal: 0..KINDS
+    parameter integer CFG_W = 8     // width of the configuration port (bit); legal: 8, 32
 ) (
-    input  wire                      clk,
-    input  wire                      cfg_valid,
-    input  wire [         CFG_W-1:0] cfg_data,
-    output wire                      garbage,
-    output wire [`CCHIP_RM_ID_W-1:0] select
+    input  wire                      clk,        // clock, rising edge
+    input  wire                      cfg_valid,  // a word is written to the configuration port
+    input  wire [         CFG_W-1:0] cfg_data,   // the word, low byte first
+    output wire                      garbage,    // what is in the slot is undefined
+    output wire [`CCHIP_RM_ID_W-1:0] select      // the module in the slot; valid while garbage = 0
 );
 
   localparam [31:0] SLOT = SLOT_ID;

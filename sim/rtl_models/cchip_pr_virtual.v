@@ -15,33 +15,52 @@
 //   otherwise    the selected module, nothing added; rst resets all of them
 //   clocks       a module that is not selected has none unless rst or the random vertices want one:
 //                what it does cannot be seen, and it takes most of the time of a simulation
+//   about        A reconfigurable region for simulations: all modules and a selector that only a
+//                complete, correct payload moves. Same ports as cchip_pr_region and the
+//                configuration port. cchip_pr_slot holds it if SIMULATION = 1.
+//   parameters   Other values stop elaboration as in cchip_pr_config_memory and cchip_pr_region.
+//   timing       While garbage = 1: every output is random on every clock, m_result_valid included;
+//                all modules get rst = 0 and random vertices, regardless of the inputs. rst resets
+//                all modules on the other clocks. Once a payload is whole its module is there but
+//                fresh: it continues with random pairs until rst rises. So a controller that holds
+//                its region in reset during the transfer, but leaves out the reset on
+//                configuration, gets answers to pairs that were never sent.
+//   numbers      Random numbers: a 64-bit xorshift, started from SEED and SLOT_ID. It is not reset:
+//                every transfer brings other garbage, every run the same.
+//   why          Verilator has no X, and a plain multiplexer between modules hides what goes wrong
+//                in practice. Random outputs show a missing or late decoupling as answers to no
+//                request; modules full of random pairs show a missing reset in the same way.
+//   measured     No area, no clock: for simulations only.
 module cchip_pr_virtual #(
-    // number of this slot, 0..255
+    // number of this slot, compared with the one in a payload; legal: 0..255
     parameter integer SLOT_ID = 0,
-    // kinds of pairs, 3, or 4 with points: the modules are 0..KINDS
+    // kinds of pairs, 4 with points against triangles; the modules are 0..KINDS; legal: 3, 4
     parameter integer KINDS = 3,
-    // module in the slot at power-up, CCHIP_RM_BLANK .. , 0..KINDS
-    parameter integer RM_ID = 1,
-    // width of the configuration port, bit, 8 or 32
-    parameter integer CFG_W = 8,
-    // start of the random numbers, any
-    parameter integer SEED = 1,
-    // see cchip_pr_region
-    parameter integer COORD_W = 16,
+    parameter integer RM_ID = 1,  // module at power-up, CCHIP_RM_BLANK on; legal: 0..KINDS
+    parameter integer CFG_W = 8,  // width of the configuration port (bit); legal: 8, 32
+    parameter integer SEED = 1,  // start of the random numbers; legal: any
+    parameter integer COORD_W = 16,  // width of a signed coordinate (bit); legal: 4..20
+    // registers in each of the stages axis and project (clock); legal:
+    // CCHIP_SUBSTAGES_MIN(COORD_W)..32
     parameter integer SUBSTAGES = 10,
+    // pairs in flight; legal: 1..256
     parameter integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES),
-    parameter integer ABSOLUTE_PROJECTION = 0,
-    parameter integer WARPED_EXACT = 1
+    parameter integer ABSOLUTE_PROJECTION = 0,  // see cchip_pr_region; legal: 0, 1
+    parameter integer WARPED_EXACT = 1  // see cchip_pr_region; legal: 0, 1
 ) (
-    input  wire                                clk,
-    input  wire                                rst,
+    input  wire                                clk,             // clock, rising edge
+    input  wire                                rst,             // synchronous reset, active high
+    // a word is written to the configuration port
     input  wire                                cfg_valid,
-    input  wire [                   CFG_W-1:0] cfg_data,
-    input  wire                                s_vertex_valid,
+    input  wire [                   CFG_W-1:0] cfg_data,        // the word, low byte first
+    input  wire                                s_vertex_valid,  // a vertex of each primitive
+    // record VERTEX, docs/hardware/definitions.md
     input  wire [`CCHIP_VERTEX_W(COORD_W)-1:0] s_vertex_data,
-    output wire                                m_result_valid,
+    output wire                                m_result_valid,  // a result
+    // record SLOT_RESULT, docs/hardware/definitions.md
     output wire [    `CCHIP_SLOT_RESULT_W-1:0] m_result_data,
-    output wire [          `CCHIP_RM_ID_W-1:0] rm_id,
+    output wire [          `CCHIP_RM_ID_W-1:0] rm_id,           // number of the selected module
+    // no accepted pair is without an accepted result
     output wire                                idle
 );
 

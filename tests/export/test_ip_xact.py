@@ -18,6 +18,7 @@ import xml.etree.ElementTree as xml
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PYTHON = ROOT / "build/venv/bin/python"
 sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "scripts")]
+import datasheet  # noqa: E402
 from tools import run, tool  # noqa: E402
 
 TOP = "cchip_chip"
@@ -121,9 +122,7 @@ class IpXact(unittest.TestCase):
         self.assertEqual(found, expected)
 
     def test_parameters(self):
-        datasheet = (ROOT / f"docs/modules/{TOP}.md").read_text()
-        table = re.search(r"## Parameters\n(.*?)\n## ", datasheet, re.S)[1]
-        rows = re.findall(r"^\| `(\w+)` \| `?(\w+)`? \|", table, re.M)
+        rows = re.findall(r"^\| `(\w+)` \| `?(\w+)`? \|", datasheet.parameter_table(TOP), re.M)
         self.assertEqual(list(self.values), [name for name, _ in rows])
         numbers = {name: int(value) for name, value in rows if value.isdigit()}
         self.assertEqual({name: self.values[name] for name in numbers}, numbers)
