@@ -12,12 +12,12 @@ namespace {
 using RuleKind = AssemblyRule::Kind;
 
 std::string length_text(const Assembly& assembly, double x) {
-  return assembly::number_text(x) + (assembly.unit.empty() ? "" : " " + assembly.unit);
+  return assembly::rounded_text(x) + (assembly.unit.empty() ? "" : " " + assembly.unit);
 }
 
 std::string point_text(const Vec3d& p) {
-  return '(' + assembly::number_text(p.x()) + ", " + assembly::number_text(p.y()) + ", " +
-         assembly::number_text(p.z()) + ')';
+  return '(' + assembly::rounded_text(p.x()) + ", " + assembly::rounded_text(p.y()) + ", " +
+         assembly::rounded_text(p.z()) + ')';
 }
 
 std::string verdict_text(const Assembly& assembly, const AssemblyPair& pair) {

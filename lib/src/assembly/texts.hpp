@@ -44,6 +44,15 @@ inline std::string number_text(double x) {
   return decimal_text(x);
 }
 
+/// Nine digits, for people.
+inline std::string rounded_text(double x) {
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text.precision(9);
+  text << x + 0.0;
+  return text.str();
+}
+
 }  // namespace cchip::assembly
 
 #endif
