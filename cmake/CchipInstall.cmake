@@ -3,6 +3,7 @@
 #   bin/cchip                     command line (if built)
 #   lib/libcchip_*.a              or .so with BUILD_SHARED_LIBS, with include/cchip/ and lib/cmake/collisionchip/:
 #                                 find_package(collisionchip) gives collisionchip::core, ::mesh_io, ::certificate and ::device,
+#                                 ::assembly if it was built with toml++,
 #                                 of cpp_ref (if built) ::wire, ::reference, ::model and ::driver
 #   lib/pkgconfig/collisionchip.pc   the same for pkg-config, without reference
 #   lib/libcchip_reconfig.a       with include/cchip/rc/ (if built): find_package(collisionchip COMPONENTS reconfig) gives
@@ -18,6 +19,11 @@ find_package(ZLIB QUIET)  # ZLIB_FOUND of lib is not seen here
 set(CCHIP_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/collisionchip)
 
 set(libraries cchip_core cchip_mesh_io cchip_certificate cchip_device)
+set(CCHIP_ASSEMBLY OFF)
+if(TARGET cchip_assembly)
+  set(CCHIP_ASSEMBLY ON)
+  list(APPEND libraries cchip_assembly)
+endif()
 if(CCHIP_MODELS)
   list(APPEND libraries cchip_wire cchip_reference cchip_model cchip_driver)
   set(CCHIP_PC_MODELS "-lcchip_driver -lcchip_model -lcchip_wire ")

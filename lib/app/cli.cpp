@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "check.hpp"
+#include "clash.hpp"
 #include "collide.hpp"
 #include "distance.hpp"
 #include "hardware.hpp"
@@ -172,6 +173,37 @@ Run add_check(CLI::App& app) {
   return [held](const Streams& streams) { return run_check(*held, streams); };
 }
 
+Run add_clash(CLI::App& app) {
+  const auto held = std::make_shared<ClashOptions>();
+  ClashOptions& options = *held;
+  CLI::App* command = app.add_subcommand(
+      "clash", "Is an assembly all right? Parts, poses and rules in; what overlaps, touches or is too near out");
+  add_text(*command, "ASSEMBLY", options.assembly,
+           "TOML file with parts and rules; or a folder of mesh files, or an OBJ with a part for each 'o'")
+      ->required();
+  add_text(*command, "--rules", options.rules, "TOML file with more rules, which come last");
+  add_text(*command, "--json", options.json, "write the report; - writes it to standard output in place of the table");
+  add_text(*command, "--junit", options.junit, "write the report as JUnit XML, a test case for each pair that meets");
+  add_text(*command, "--accept", options.accept,
+           "write rules that accept what parts do now, for --rules or the key rules of ASSEMBLY");
+  add_text(*command, "--unit", options.unit, "mm, cm, m, in or ft: that of the assembly's numbers");
+  add_text(*command, "--clearance", options.clearance,
+           "parts without a rule must be this far apart (default: what ASSEMBLY says, or 0: they must not touch)");
+  add_whole(*command, "--threads", options.threads, "threads (default 0: as many as there are cores)",
+            WholeRange{0, 4096});
+  command->add_flag("--lenient", options.lenient,
+                    "leave out faces that cannot be used, name them on standard error, and end with exit code 4");
+  command->footer(
+      "Exit codes: 0 all is as the rules want it, 1 violations (or an internal error, which standard error names),\n"
+      "2 wrong input or command line, 4 no violation, but faces left out or a pair that could not be judged.\n"
+      "Examples:\n"
+      "  cchip clash assembly.toml\n"
+      "  cchip clash assembly.toml --junit clash.xml\n"
+      "  cchip clash parts/ --unit mm --accept accepted.toml\n"
+      "  cchip clash parts/ --unit mm --rules accepted.toml");
+  return [held](const Streams& streams) { return run_clash(*held, streams); };
+}
+
 std::string command_names(const CLI::App& app) {
   std::string names;
   for (const CLI::App* command : app.get_subcommands({})) names += (names.empty() ? "" : ", ") + command->get_name();
@@ -256,10 +288,11 @@ std::string unreadable(const CLI::App& app, const CLI::ParseError& error) {
   std::string what = error.what();
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError)) {
     const std::string name = what.substr(0, what.find(' '));
-    what = name == "A"      ? "the first mesh, A, is missing"
-           : name == "B"    ? "the second mesh, B, is missing"
-           : name == "FILE" ? "the file of the pairs, FILE, is missing"
-                            : what;
+    what = name == "A"          ? "the first mesh, A, is missing"
+           : name == "B"        ? "the second mesh, B, is missing"
+           : name == "ASSEMBLY" ? "the assembly, ASSEMBLY, is missing"
+           : name == "FILE"     ? "the file of the pairs, FILE, is missing"
+                                : what;
   }
   return what + "; see " + help_of(app);
 }
@@ -303,6 +336,7 @@ int dispatch(std::vector<std::string> arguments, const Streams& streams, const H
       {"collide", [hardware](CLI::App& to) { return add_collide(to, hardware); }},
       {"distance", add_distance},
       {"check", add_check},
+      {"clash", add_clash},
   };
   if (hardware != nullptr) commands.insert(commands.end(), hardware->commands.begin(), hardware->commands.end());
   std::vector<Run> runs;

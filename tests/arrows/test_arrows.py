@@ -16,6 +16,7 @@ LIB = ["geometry", "mesh", "exact", "tree", "judge", "certificate", "search", "q
 ROOMS = {room: set(LIB[:i]) for i, room in enumerate(LIB)}
 ROOMS["mesh"] = {"geometry"}
 ROOMS["mesh_io"] = {"geometry", "mesh"}
+ROOMS["assembly"] = set(LIB) | {"mesh_io"}  # behind query
 ROOMS["users"] = {"exact", "certificate"}  # of these only what headers for users bring in: tests/install/headers.py
 LIBRARY = set(ROOMS)
 # Of cpp_ref, what the RTL is held to and its host.
@@ -44,7 +45,8 @@ FOLDERS = {"lib/program": "program", "lib/app": "app", "cpp_ref/blocks": "blocks
 # CMake target: the targets of this project that it may link, directly.
 LINKS = {
     "cchip_core": set(), "cchip_mesh_io": {"core"}, "cchip_certificate": {"core"}, "cchip_device": {"certificate", "core"},
-    "cchip_program": {"core"}, "cchip_app": {"certificate", "device", "mesh_io", "program"}, "cchip": {"app", "commands"},
+    "cchip_assembly": {"device", "mesh_io"}, "cchip_program": {"core"},
+    "cchip_app": {"assembly", "certificate", "device", "mesh_io", "program"}, "cchip": {"app", "commands"},
     "cchip_without_hardware": {"app"},
     "cchip_wire": {"core"}, "cchip_reference": {"wire"}, "cchip_model": {"wire"}, "cchip_blocks": {"core", "model"},
     "cchip_driver": {"certificate", "device", "model", "wire"},

@@ -14,7 +14,8 @@ namespace cchip {
 enum ExitCode : int {
   exit_ok = 0,
   exit_internal = 1,
-  exit_refused = 1,  ///< `check`: a certificate does not hold
+  exit_refused = 1,    ///< `check`: a certificate does not hold
+  exit_violation = 1,  ///< `clash`: the assembly is not as its rules want it
   exit_usage = 2,
   exit_mismatch = 3,
   exit_left_out = 4,  ///< answered without the faces that could not be used (--lenient)

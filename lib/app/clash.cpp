@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "clash.hpp"
+
+#include <fmt/format.h>
+
+#include <cchip/assembly.hpp>
+#include <cchip/internal/geometry/decimal.hpp>
+#include <cchip/program/output_file.hpp>
+#include <cchip/program/usage_error.hpp>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+namespace cchip::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Assembly read_assembly(const ClashOptions& options) {
+  AssemblyLoadOptions load;
+  load.unit = options.unit;
+  load.rules = options.rules;
+  load.lenient = options.lenient;
+  std::optional<double> clearance;
+  if (!options.clearance.empty()) {
+    clearance = read_decimal(options.clearance);
+    if (!clearance || !std::isfinite(*clearance) || *clearance < 0) {
+      throw UsageError(fmt::format("--clearance: got '{}'; write a length in units of the assembly that is at least 0",
+                                   options.clearance));
+    }
+  }
+  try {
+    Assembly assembly = load_assembly(options.assembly, load);
+    if (clearance) assembly.clearance = *clearance;
+    return assembly;
+  } catch (const std::runtime_error& error) {
+    throw UsageError(error.what());
+  }
+}
+
+AssemblyReport judge(const Assembly& assembly, const ClashOptions& options) {
+  AssemblyCheckOptions check_options;
+  check_options.threads = options.threads;
+  try {
+    return check(assembly, check_options);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(options.assembly + ": " + error.what());
+  }
+}
+
+std::string size_text(const Assembly& assembly, const AssemblyReport& report) {
+  return fmt::format("size {} x {} x {} {}", report.size[0], report.size[1], report.size[2],
+                     assembly.unit.empty() ? "(no unit given)" : assembly.unit);
+}
+
+std::string summary(const Assembly& assembly, const AssemblyReport& report) {
+  return fmt::format("parts={} pairs={} violations={} accepted={} unused_rules={}", assembly.parts.size(),
+                     report.judged, report.violations, report.accepted, report.unused_rules.size());
+}
+
+bool has_reason(const Assembly& assembly, const AssemblyPair& pair) {
+  return pair.rule && assembly.rules[*pair.rule].kind == AssemblyRule::Kind::anything;
+}
+
+void write_table(const Assembly& assembly, const AssemblyReport& report, std::ostream& out) {
+  out << size_text(assembly, report) << '\n';
+  for (const AssemblyPair& pair : report.pairs) {
+    if (pair.is_violation) out << "violation: " << sentence(assembly, pair) << '\n';
+  }
+  for (const AssemblyPair& pair : report.pairs) {
+    if (!pair.is_judged) out << "not judged: " << sentence(assembly, pair) << '\n';
+    if (has_reason(assembly, pair)) out << "allowed: " << sentence(assembly, pair) << '\n';
+  }
+  for (const std::size_t rule : report.unused_rules) out << "unused rule: " << why_unused(assembly, rule) << '\n';
+}
+
+Json to_json(const Vec3d& p) { return Json::array({p.x(), p.y(), p.z()}); }
+
+Json to_json(const Assembly& assembly, const AssemblyPair& pair) {
+  Json object = {{"a", assembly.parts[pair.a].name},
+                 {"b", assembly.parts[pair.b].name},
+                 {"verdict", name_of(pair.verdict)},
+                 {"violation", pair.is_violation},
+                 {"judged", pair.is_judged},
+                 {"rule", nullptr},
+                 {"depth", nullptr},
+                 {"direction", nullptr},
+                 {"distance", nullptr},
+                 {"nearest", nullptr},
+                 {"text", sentence(assembly, pair)}};
+  if (pair.rule) object["rule"] = assembly.rules[*pair.rule].place;
+  if (pair.way) {
+    object["depth"] = pair.way->depth;
+    object["direction"] = to_json(pair.way->direction);
+  }
+  if (pair.verdict == PairVerdict::too_near) {
+    object["distance"] = {pair.distance_lower, pair.distance_upper};
+    object["nearest"] = {to_json(pair.nearest[0]), to_json(pair.nearest[1])};
+  }
+  return object;
+}
+
+std::string json_text(const Assembly& assembly, const AssemblyReport& report) {
+  Json parts = Json::array();
+  for (const AssemblyPart& part : assembly.parts) {
+    parts.push_back({{"name", part.name}, {"file", part.file}, {"groups", part.groups}});
+  }
+  Json pairs = Json::array();
+  for (const AssemblyPair& pair : report.pairs) pairs.push_back(to_json(assembly, pair));
+  Json unused = Json::array();
+  for (const std::size_t rule : report.unused_rules) unused.push_back(why_unused(assembly, rule));
+  const Json object = {{"unit", assembly.unit.empty() ? Json() : Json(assembly.unit)},
+                       {"size", report.size},
+                       {"judged", report.judged},
+                       {"violations", report.violations},
+                       {"accepted", report.accepted},
+                       {"not_judged", report.not_judged},
+                       {"faces_left_out", assembly.faces_left_out},
+                       {"parts", parts},
+                       {"pairs", pairs},
+                       {"unused_rules", unused},
+                       {"notes", report.notes}};
+  return object.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+/// Text in XML 1.0, in which control characters cannot be written at all.
+std::string xml_text(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
+    }
+  }
+  return result;
+}
+
+/// A test case for each pair that meets or is too near, and one for the assembly, so that it is never empty.
+std::string junit_text(const Assembly& assembly, const AssemblyReport& report, const std::string& path) {
+  const std::string name = xml_text(std::filesystem::path(path).filename().string());
+  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
+  text += fmt::format("<testsuite name=\"cchip clash {}\" tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"{}\">\n",
+                      name, report.pairs.size() + 1, report.violations, report.not_judged);
+  text += fmt::format("  <testcase classname=\"{}\" name=\"assembly\"><system-out>{}</system-out></testcase>\n", name,
+                      xml_text(size_text(assembly, report) + "; " + summary(assembly, report)));
+  for (const AssemblyPair& pair : report.pairs) {
+    text += fmt::format("  <testcase classname=\"{}\" name=\"{} / {}\">", name, xml_text(assembly.parts[pair.a].name),
+                        xml_text(assembly.parts[pair.b].name));
+    const std::string words = xml_text(sentence(assembly, pair));
+    if (pair.is_violation) {
+      text += fmt::format("<failure type=\"{}\" message=\"{}\"/>", name_of(pair.verdict), words);
+    } else if (!pair.is_judged) {
+      text += fmt::format("<skipped message=\"{}\"/>", words);
+    } else {
+      text += fmt::format("<system-out>{}</system-out>", words);
+    }
+    text += "</testcase>\n";
+  }
+  return text + "</testsuite>\n";
+}
+
+void write_file(const std::string& path, const std::string& text) {
+  sim::OutputFile file(path);
+  file.stream() << text;
+  file.commit();
+}
+
+}  // namespace
+
+int run_clash(const ClashOptions& options, const Streams& streams) {
+  const bool json_out = options.json == "-";
+  sim::check_outputs(
+      {{"ASSEMBLY", options.assembly}, {"--rules", options.rules}},
+      {{"--json", json_out ? "" : options.json}, {"--junit", options.junit}, {"--accept", options.accept}});
+  for (const std::string& path : {json_out ? std::string() : options.json, options.junit, options.accept}) {
+    if (!path.empty()) sim::check_writable(path);
+  }
+  const Assembly assembly = read_assembly(options);
+  for (const std::string& note : assembly.notes) streams.err << "cchip: " << note << '\n';
+  const AssemblyReport report = judge(assembly, options);
+  for (const std::string& note : report.notes) streams.err << "cchip: " << note << '\n';
+  if (json_out) {
+    streams.out << json_text(assembly, report);
+  } else {
+    write_table(assembly, report, streams.out);
+    if (!options.json.empty()) write_file(options.json, json_text(assembly, report));
+  }
+  if (!options.junit.empty()) write_file(options.junit, junit_text(assembly, report, options.assembly));
+  if (!options.accept.empty()) write_file(options.accept, accepting_rules(assembly, report));
+  (json_out ? streams.err : streams.out) << summary(assembly, report) << '\n';
+  if (report.violations > 0) return exit_violation;
+  return report.not_judged > 0 || assembly.faces_left_out > 0 ? exit_left_out : exit_ok;
+}
+
+}  // namespace cchip::app

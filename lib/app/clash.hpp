@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The command `cchip clash`: is an assembly as its rules want it?
+#ifndef CCHIP_APP_CLASH_HPP
+#define CCHIP_APP_CLASH_HPP
+
+#include <string>
+
+#include "cli.hpp"
+
+namespace cchip::app {
+
+struct ClashOptions {
+  std::string assembly;   ///< TOML file, folder or OBJ
+  std::string rules;      ///< a file with more rules; empty: none
+  std::string json;       ///< the report; "-": standard output, in place of the table; empty: none
+  std::string junit;      ///< the report as JUnit XML; empty: none
+  std::string accept;     ///< rules that accept what parts do now; empty: none
+  std::string unit;       ///< of the assembly, in place of the file's; empty: that
+  std::string clearance;  ///< in place of the file's; empty: that
+  unsigned threads = 0;   ///< 0: as many as there are cores
+  bool lenient = false;   ///< faces that cannot be used are left out
+};
+
+/// Runs it and returns the exit code.
+/// \throws UsageError
+int run_clash(const ClashOptions& options, const Streams& streams);
+
+}  // namespace cchip::app
+
+#endif

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <atomic>
+#include <cchip/assembly.hpp>
+#include <cchip/cpu_device.hpp>
+#include <cchip/scene.hpp>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "pair_judge.hpp"
+#include "rule_book.hpp"
+#include "texts.hpp"
+
+namespace cchip {
+namespace {
+
+using assembly::RuleBook;
+using RuleKind = AssemblyRule::Kind;
+using Numbers = std::pair<std::size_t, std::size_t>;
+
+/// The pairs that may be more than apart, or must be.
+std::vector<Numbers> pairs_to_judge(const Assembly& assembly, const RuleBook& rules, unsigned threads) {
+  Scene scene;
+  for (const AssemblyPart& part : assembly.parts) scene.add(part.object, part.pose);  // part i has the id i + 1
+  std::set<Numbers> pairs;
+  for (const auto& [a, b] : scene.candidates()) pairs.emplace(a - 1, b - 1);
+  CpuOptions cpu;
+  cpu.threads = threads;
+  const std::unique_ptr<Device> device = open_cpu_device(cpu);
+  for (const double clearance : rules.clearances()) {
+    scene.set_filter([&rules, clearance](Scene::Id a, Scene::Id b) {
+      return rules.clearance_of(a - 1, b - 1) == clearance;  // NOLINT: one of them
+    });
+    CollisionRequest request;
+    request.within = clearance;
+    for (const Scene::Pair& pair : scene.contacts(*device, request)) pairs.emplace(pair.a - 1, pair.b - 1);
+  }
+  for (std::size_t i = 0; i < assembly.rules.size(); ++i) {
+    if (assembly.rules[i].kind != RuleKind::inside && assembly.rules[i].kind != RuleKind::same) continue;
+    rules.for_each_pair(i, [&pairs, &rules, i](std::size_t a, std::size_t b) {
+      if (rules.rule_of(a, b) == i) pairs.emplace(a, b);
+      return true;
+    });
+  }
+  return {pairs.begin(), pairs.end()};
+}
+
+/// Calls `run` for 0..count - 1 in several threads. Of several exceptions that of the least number is thrown.
+template <class Function>
+void run_all(std::size_t count, unsigned threads, const Function& run) {
+  std::atomic<std::size_t> next = 0;
+  std::mutex mutex;
+  std::size_t failed = count;
+  std::exception_ptr error;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < count; i = next++) {
+      try {
+        run(i);
+      } catch (...) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        if (i < failed) {
+          failed = i;
+          error = std::current_exception();
+        }
+      }
+    }
+  };
+  if (threads == 0) threads = std::max(1U, std::thread::hardware_concurrency());
+  std::vector<std::thread> others;
+  for (std::size_t i = 1; i < std::min<std::size_t>(threads, count); ++i) others.emplace_back(work);
+  work();
+  for (std::thread& other : others) other.join();
+  if (error) std::rethrow_exception(error);
+}
+
+/// Rules that allow something are used if a pair does it; others, if they count for a pair at all.
+std::vector<std::size_t> find_unused(const Assembly& assembly, const RuleBook& rules,
+                                     const std::vector<AssemblyPair>& pairs) {
+  std::vector<bool> used(assembly.rules.size(), false);
+  for (const AssemblyPair& pair : pairs) {
+    if (pair.rule && pair.verdict != PairVerdict::apart) used[*pair.rule] = true;
+  }
+  std::vector<std::size_t> unused;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    const RuleKind kind = assembly.rules[i].kind;
+    if (kind != RuleKind::touching && kind != RuleKind::overlap && kind != RuleKind::anything) {
+      rules.for_each_pair(i, [&used, &rules, i](std::size_t a, std::size_t b) {
+        used[i] = used[i] || rules.rule_of(a, b) == i;
+        return !used[i];
+      });
+    }
+    if (!used[i]) unused.push_back(i);
+  }
+  return unused;
+}
+
+struct Box {
+  Vec3d least = Vec3d::Constant(std::numeric_limits<double>::infinity());
+  Vec3d greatest = Vec3d::Constant(-std::numeric_limits<double>::infinity());
+};
+
+Box box_of(const AssemblyPart& part) {
+  Box box;
+  for (const Mesh::Face& face : part.object.mesh().faces) {
+    for (std::size_t i = 0; i < (face.kind == Kind::quad ? 4U : 3U); ++i) {
+      const Vec3d at = part.pose * part.object.mesh().vertices[face.vertex[i]];
+      box.least = box.least.cwiseMin(at);
+      box.greatest = box.greatest.cwiseMax(at);
+    }
+  }
+  return box;
+}
+
+/// Notes about parts one by one, and the size of all.
+void look_at_parts(const Assembly& assembly, AssemblyReport& report) {
+  Box all;
+  std::size_t least = 0;
+  std::size_t greatest = 0;
+  std::vector<double> sizes;
+  for (std::size_t i = 0; i < assembly.parts.size(); ++i) {
+    const AssemblyPart& part = assembly.parts[i];
+    const Box box = box_of(part);
+    all.least = all.least.cwiseMin(box.least);
+    all.greatest = all.greatest.cwiseMax(box.greatest);
+    sizes.push_back((box.greatest - box.least).maxCoeff());
+    if (sizes[i] < sizes[least]) least = i;
+    if (sizes[i] > sizes[greatest]) greatest = i;
+    if (const std::optional<OpenEdge> edge = part.object.open_edge()) {
+      report.notes.push_back(part.name + " is an open mesh (an odd number of faces use an edge of face " +
+                             std::to_string(edge->face) + "), so it is judged as a surface; close it to judge a solid");
+    }
+  }
+  if (assembly.parts.empty()) return;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    report.size[i] = all.greatest[axis] - all.least[axis];
+  }
+  constexpr double suspicious = 1000;
+  if (sizes[greatest] >= suspicious * sizes[least]) {
+    report.notes.push_back(assembly.parts[greatest].name + " is " + assembly::number_text(sizes[greatest]) + " long, " +
+                           assembly.parts[least].name + " " + assembly::number_text(sizes[least]) +
+                           ": 1,000 times or more; check the units of their files");
+  }
+}
+
+}  // namespace
+
+AssemblyReport check(const Assembly& assembly, const AssemblyCheckOptions& options) {
+  const RuleBook rules(assembly);
+  AssemblyReport report;
+  look_at_parts(assembly, report);
+  const std::vector<Numbers> numbers = pairs_to_judge(assembly, rules, options.threads);
+  std::vector<AssemblyPair> pairs(numbers.size());
+  run_all(numbers.size(), options.threads, [&](std::size_t i) {
+    pairs[i] = assembly::judge_pair(assembly, rules, numbers[i].first, numbers[i].second, options.most_normals);
+  });
+  report.judged = pairs.size();
+  report.unused_rules = find_unused(assembly, rules, pairs);
+  for (AssemblyPair& pair : pairs) {
+    const bool meets = pair.verdict != PairVerdict::apart;
+    if (!meets && !pair.is_violation && pair.is_judged) continue;
+    report.violations += pair.is_violation ? 1 : 0;
+    report.accepted += meets && !pair.is_violation ? 1 : 0;
+    report.not_judged += pair.is_judged ? 0 : 1;
+    report.pairs.push_back(std::move(pair));
+  }
+  return report;
+}
+
+}  // namespace cchip

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cchip/assembly.hpp>
+#include <cchip/mesh_file.hpp>
+#include <filesystem>
+#include <iterator>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "mesh_io/file_content.hpp"
+#include "mesh_io/other_formats.hpp"
+#include "obj_parts.hpp"
+#include "source.hpp"
+
+namespace cchip {
+namespace {
+
+namespace fs = std::filesystem;
+using assembly::AssemblySource;
+using assembly::PartSource;
+
+bool is_mesh_name(const std::string& name) {
+  constexpr std::array<std::string_view, 4> ends = {".obj", ".off", ".ply", ".stl"};
+  return std::find(ends.begin(), ends.end(), mesh_io::extension_of(mesh_io::name_inside(name))) != ends.end();
+}
+
+/// A path that is relative to the folder of a file.
+std::string beside(const std::string& file, const std::string& path) {
+  return (fs::path(file).parent_path() / path).string();
+}
+
+class Loader {
+ public:
+  explicit Loader(const AssemblyLoadOptions& options) : options_(options) {
+    if (options.unit.empty() || assembly::millimetres(options.unit) > 0) return;
+    throw std::runtime_error("unit '" + options.unit + "': there is no such unit; give " + assembly::units);
+  }
+
+  Assembly load(const std::string& path) {
+    assembly_.unit = options_.unit;
+    std::error_code error;
+    if (fs::is_directory(path, error)) {
+      load_folder(path);
+    } else if (mesh_io::extension_of(path) == ".toml") {
+      load_toml(path);
+    } else if (mesh_io::extension_of(mesh_io::name_inside(path)) == ".obj") {
+      load_obj(path);
+    } else {
+      refuse(path, "is no assembly; give a TOML file, a folder of mesh files, or an OBJ with a part for each 'o'");
+    }
+    if (assembly_.parts.size() < 2) {
+      refuse(path, "holds one part, which cannot clash; give an assembly of at least two");
+    }
+    if (!options_.rules.empty()) add_rules(load_rules(options_.rules));
+    return std::move(assembly_);
+  }
+
+ private:
+  [[noreturn]] static void refuse(const std::string& path, const std::string& what) {
+    throw std::runtime_error(path + ": " + what);
+  }
+
+  void add_rules(std::vector<AssemblyRule> rules) {
+    std::move(rules.begin(), rules.end(), std::back_inserter(assembly_.rules));
+  }
+
+  LoadOptions mesh_options(std::size_t& left_out) const {
+    LoadOptions options;
+    options.lenient = options_.lenient;
+    options.faces_left_out = &left_out;
+    return options;
+  }
+
+  static Object build(Mesh mesh, const std::string& path) {
+    try {
+      return Object(std::move(mesh));
+    } catch (const std::invalid_argument& error) {
+      refuse(path, error.what());
+    }
+  }
+
+  /// The object of a mesh file; one that was read before is taken again.
+  const Object& object_of(const std::string& path) {
+    std::error_code error;
+    const fs::path whole = fs::weakly_canonical(path, error);
+    const std::string key = error ? path : whole.string();
+    const auto found = objects_.find(key);
+    if (found != objects_.end()) return found->second;
+    std::size_t left_out = 0;
+    Mesh mesh = load_mesh(path, mesh_options(left_out));
+    assembly_.faces_left_out += left_out;
+    for (const std::string& note : mesh.notes) assembly_.notes.push_back(path + ": " + note);
+    return objects_.emplace(key, build(std::move(mesh), path)).first->second;
+  }
+
+  void add_part(std::string name, const Object& object, const Pose& pose, std::vector<std::string> groups,
+                const std::string& file) {
+    std::string unique = name;
+    for (std::size_t i = 2; !names_.insert(unique).second; ++i) unique = name + "#" + std::to_string(i);
+    assembly_.parts.push_back({unique, object, pose, std::move(groups), file});
+  }
+
+  void load_folder(const std::string& path) {
+    std::vector<fs::path> files;
+    for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
+      std::error_code error;
+      if (entry.is_regular_file(error) && is_mesh_name(entry.path().filename().string())) files.push_back(entry.path());
+    }
+    std::sort(files.begin(), files.end());
+    if (files.empty()) refuse(path, "the folder holds no mesh file (OBJ, OFF, PLY, STL); give another one");
+    for (const fs::path& file : files) {
+      add_part(file.filename().string(), object_of(file.string()), Pose::Identity(), {}, file.string());
+    }
+  }
+
+  void load_obj(const std::string& path) {
+    std::size_t left_out = 0;
+    const auto parts = assembly::load_obj_parts(path, mesh_options(left_out), assembly_.notes);
+    assembly_.faces_left_out += left_out;
+    for (const assembly::ObjPart& part : parts) {
+      const std::string name = part.name.empty() ? fs::path(path).stem().string() : part.name;
+      add_part(name, build(part.mesh, path), Pose::Identity(), {}, path);
+    }
+  }
+
+  void load_toml(const std::string& path) {
+    const AssemblySource source = assembly::read_toml(path, true);
+    if (assembly_.unit.empty()) assembly_.unit = source.unit;
+    assembly_.clearance = source.clearance;
+    for (const PartSource& part : source.parts) {
+      const Object& object = part_object(path, part);
+      const std::string name = part.name.empty() ? fs::path(part.file).stem().string() : part.name;
+      add_part(name, object, placed(part), part.groups, beside(path, part.file));
+    }
+    add_rules(source.rules);
+    for (const std::string& file : source.rules_files) add_rules(load_rules(beside(path, file)));
+  }
+
+  const Object& part_object(const std::string& path, const PartSource& part) {
+    try {
+      return object_of(beside(path, part.file));
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error(part.place + ": " + error.what());
+    }
+  }
+
+  /// The pose with the unit of the file worked in.
+  Pose placed(const PartSource& part) const {
+    if (part.unit.empty() || part.unit == assembly_.unit) return part.pose;
+    if (assembly_.unit.empty()) {
+      throw std::runtime_error(part.place + ": key 'unit' says " + part.unit +
+                               ", but the assembly has no unit to convert to; add unit = \"mm\" or another at the top");
+    }
+    Pose pose = part.pose;
+    pose.linear() *= assembly::millimetres(part.unit) / assembly::millimetres(assembly_.unit);
+    return pose;
+  }
+
+  const AssemblyLoadOptions& options_;
+  Assembly assembly_;
+  std::map<std::string, Object> objects_;  ///< by the path of their file
+  std::set<std::string> names_;
+};
+
+}  // namespace
+
+Assembly load_assembly(const std::string& path, const AssemblyLoadOptions& options) {
+  return Loader(options).load(path);
+}
+
+std::vector<AssemblyRule> load_rules(const std::string& path) { return assembly::read_toml(path, false).rules; }
+
+}  // namespace cchip

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// How far must a part be moved until it shares no volume with another?
+#ifndef CCHIP_ASSEMBLY_PARTING_WAY_HPP
+#define CCHIP_ASSEMBLY_PARTING_WAY_HPP
+
+#include <cchip/assembly.hpp>
+#include <cstddef>
+#include <optional>
+
+namespace cchip::assembly {
+
+/// The least translation of B along a normal of a face in contact, either way, after which the parts share no volume;
+/// none if no such translation is found. After it the parts were looked at again, so it is a witness.
+/// \param enough the first one that is not longer is taken
+/// \param most_normals how many are tried, those of most contacts first
+std::optional<PartingWay> parting_way(const AssemblyPart& a, const AssemblyPart& b, double enough,
+                                      std::size_t most_normals);
+
+}  // namespace cchip::assembly
+
+#endif
