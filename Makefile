@@ -148,7 +148,7 @@ export: $(RELEASE)/build.ninja ## one Verilog file per top with constraints, dat
 	scripts/export.py $(EXPORT_ARGS)
 
 install: $(RELEASE)/build.ninja ## install command, libraries, headers and RTL below DESTDIR/PREFIX
-	cmake --build $(RELEASE) -j $(JOBS) --target cchip cchip_shell_files cchip_core cchip_mesh_io cchip_certificate cchip_device cchip_wire cchip_reference cchip_model cchip_driver cchip_reconfig
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip cchip_shell_files cchip_core cchip_mesh_io cchip_certificate cchip_device cchip_assembly cchip_wire cchip_reference cchip_model cchip_driver cchip_reconfig
 	$(if $(DESTDIR),DESTDIR="$(abspath $(DESTDIR))") cmake --install $(RELEASE) --prefix "$(PREFIX)"
 
 clean: ## delete what was built
