@@ -268,6 +268,8 @@ def head(text, module):
             if declaration["parameter"]:
                 parameters.append((declaration["parameter"], declaration["value"], meaning))
             else:
+                if not meaning and group and "AXI4" in group:  # what the standard says of the signal
+                    meaning = re.search(r"AXI4(?:-Lite)?", group)[0]
                 ports.append((declaration["direction"], declaration["top"] or "", declaration["port"], meaning, group))
         elif code.startswith(")"):
             group = None

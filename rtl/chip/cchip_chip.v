@@ -60,44 +60,25 @@ module cchip_chip #(
     // ---- clock and reset
     input  wire                          clk,                // clock, rising edge
     input  wire                          rst,                // synchronous reset, active high
-    // ---- registers, AXI4-Lite
-    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
+    // ---- registers, AXI4-Lite: docs/hardware/chip-registers.md
     input  wire                          s_axil_awvalid,
-    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     output wire                          s_axil_awready,
-    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     input  wire [                  11:0] s_axil_awaddr,
-    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     input  wire [                   2:0] s_axil_awprot,
-    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     input  wire                          s_axil_wvalid,
-    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     output wire                          s_axil_wready,
-    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     input  wire [                  31:0] s_axil_wdata,
-    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     input  wire [                   3:0] s_axil_wstrb,
-    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     output wire                          s_axil_bvalid,
-    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     input  wire                          s_axil_bready,
-    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     output wire [                   1:0] s_axil_bresp,
-    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     input  wire                          s_axil_arvalid,
-    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     output wire                          s_axil_arready,
-    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     input  wire [                  11:0] s_axil_araddr,
-    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     input  wire [                   2:0] s_axil_arprot,
-    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     output wire                          s_axil_rvalid,
-    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     input  wire                          s_axil_rready,
-    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     output wire [                  31:0] s_axil_rdata,
-    // AXI4-Lite, see chip-registers.md, docs/hardware/chip-registers.md
     output wire [                   1:0] s_axil_rresp,
     // ---- interrupt
     // interrupt: an event that is enabled; level, 0 for a clock after each write of

@@ -100,20 +100,20 @@ module cchip_broad_phase_axi #(
     input  wire [                    31:0] memory_limit,
     // ---- AXI4, reading
     output wire                            m_axi_arvalid,     // AXI4 read address
-    input  wire                            m_axi_arready,     // AXI4
-    output wire [      $clog2(MISSES)-1:0] m_axi_arid,        // AXI4
+    input  wire                            m_axi_arready,
+    output wire [      $clog2(MISSES)-1:0] m_axi_arid,
     output wire [                    63:0] m_axi_araddr,      // address, bytes
-    output wire [                     7:0] m_axi_arlen,       // AXI4
-    output wire [                     2:0] m_axi_arsize,      // AXI4
+    output wire [                     7:0] m_axi_arlen,
+    output wire [                     2:0] m_axi_arsize,
     output wire [                     1:0] m_axi_arburst,     // INCR
-    output wire [                     3:0] m_axi_arcache,     // AXI4
-    output wire [                     2:0] m_axi_arprot,      // AXI4
+    output wire [                     3:0] m_axi_arcache,
+    output wire [                     2:0] m_axi_arprot,
     input  wire                            m_axi_rvalid,      // AXI4 read data
     output wire                            m_axi_rready,      // always 1 after reset
-    input  wire [      $clog2(MISSES)-1:0] m_axi_rid,         // AXI4
-    input  wire [              DATA_W-1:0] m_axi_rdata,       // AXI4
-    input  wire [                     1:0] m_axi_rresp,       // AXI4
-    input  wire                            m_axi_rlast        // AXI4
+    input  wire [      $clog2(MISSES)-1:0] m_axi_rid,
+    input  wire [              DATA_W-1:0] m_axi_rdata,
+    input  wire [                     1:0] m_axi_rresp,
+    input  wire                            m_axi_rlast
 );
 
   wire read_valid, beat_valid, beat_last;
