@@ -178,8 +178,9 @@ Run add_clash(CLI::App& app) {
   ClashOptions& options = *held;
   CLI::App* command = app.add_subcommand(
       "clash", "Is an assembly all right? Parts, poses and rules in; what overlaps, touches or is too near out");
-  add_text(*command, "ASSEMBLY", options.assembly,
-           "TOML file with parts and rules; or a folder of mesh files, or an OBJ with a part for each 'o'")
+  add_text(
+      *command, "ASSEMBLY", options.assembly,
+      "TOML file with parts and rules; or a folder of mesh files, an OBJ with a part for each 'o', glTF, GLB or 3MF")
       ->required();
   add_text(*command, "--rules", options.rules, "TOML file with more rules, which come last");
   add_text(*command, "--json", options.json, "write the report; - writes it to standard output in place of the table");

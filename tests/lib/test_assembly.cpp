@@ -389,7 +389,7 @@ TEST_CASE("assembly: folders and OBJ files", "[assembly]") {
   CHECK(folder.error(obj + "o empty\n", "y.obj") ==
         "y.obj:16: the part 'empty' has no faces, so nothing can be said about it; remove this line or add its faces");
   CHECK(folder.error("v 0 0 0\no a\no b\n", "z.obj").find("no faces") != std::string::npos);
-  CHECK(folder.error("glTF", "z.glb").find("is no assembly; give a TOML file") != std::string::npos);
+  CHECK(folder.error("#usda 1.0", "z.usd").find("is no assembly; give a TOML file") != std::string::npos);
 }
 
 TEST_CASE("assembly: what is wrong with a file, where and what to do", "[assembly]") {

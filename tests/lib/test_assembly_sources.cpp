@@ -208,8 +208,8 @@ void check_box(const AssemblyPart& part, const Vec3d& low, const Vec3d& high) {
   INFO(part.name);
   CHECK(part.object.is_closed());
   CHECK(std::abs(six_volumes(part)) == 36);
-  CHECK(box_of(part)[0] == low);
-  CHECK(box_of(part)[1] == high);
+  CHECK((box_of(part)[0] == low));
+  CHECK((box_of(part)[1] == high));
 }
 
 std::string notes_of(const Assembly& assembly) {
@@ -357,13 +357,13 @@ TEST_CASE("glTF: poses are whole products", "[assembly]") {
   const Pose matrix =
       pose_in(folder, R"("translation":[10,0,0],)", R"("matrix":[1,0,0,0, 0.5,1,0,0, 0,0,-1,0, 1,2,3,1],)");
   expected << 1, h, 0, 0, 1, 0, 0, 0, -1;
-  CHECK(matrix.linear() == expected);
-  CHECK(Vec3d(matrix.translation()) == Vec3d(11, 2, 3));
+  CHECK((matrix.linear() == expected));
+  CHECK((Vec3d(matrix.translation()) == Vec3d(11, 2, 3)));
   // quarter turns, as doubles and in the singles of several programs
   expected << 1, 0, 0, 0, 0, -1, 0, 1, 0;
   for (const char* const digits : {"0.7071067811865475", "0.70710683", "0.70710677", "0.707107"}) {
     const std::string rotation = std::string("\"rotation\":[") + digits + ",0,0," + digits + "],";
-    CHECK(pose_in(folder, "", rotation).linear() == expected);
+    CHECK((pose_in(folder, "", rotation).linear() == expected));
   }
   CHECK(pose_in(folder, "", R"("scale":[-1,1,1],)").linear().determinant() == -1);
 }
@@ -436,7 +436,7 @@ TEST_CASE("glTF: sparse accessors and quantised positions", "[assembly]") {
       gltf.add_mesh(primitive(position, gltf.indices(triangle_corners())));
       gltf.more = R"("extensionsRequired":["KHR_mesh_quantization"],)";
       const double side = normalized != 0 ? 1 : greatest;
-      CHECK(box_of(load(folder, gltf).parts[0])[1] == Vec3d::Constant(side));
+      CHECK((box_of(load(folder, gltf).parts[0])[1] == Vec3d::Constant(side)));
     }
   }
   SECTION("the least integer is -1") {
@@ -446,8 +446,8 @@ TEST_CASE("glTF: sparse accessors and quantised positions", "[assembly]") {
                           5122, 3, "VEC3", ",\"normalized\":true");
     gltf.add_mesh(primitive(position, gltf.indices({0, 1, 2})));
     const auto box = box_of(load(folder, gltf).parts[0]);
-    CHECK(box[0] == Vec3d(-1, 0, 0));
-    CHECK(box[1] == Vec3d(0, 1, 16384.0 / 32767));
+    CHECK((box[0] == Vec3d(-1, 0, 0)));
+    CHECK((box[1] == Vec3d(0, 1, 16384.0 / 32767)));
   }
 }
 
@@ -487,7 +487,7 @@ TEST_CASE("glTF: what is not read is refused by its name", "[assembly]") {
   const std::size_t position = packed.add_accessor(R"({"componentType":5126,"count":8,"type":"VEC3"})");
   packed.add_mesh(primitive(position, packed.indices({0, 1, 2}), R"(,"extensions":{"KHR_draco_mesh_compression":{}})"));
   CHECK(contains(error(folder, packed), "is packed by KHR_draco_mesh_compression"));
-  folder.write("x.gltf", replaced(boxes().json("\"extensions\":{\"EXT_meshopt_compression\":{}},"), "x", "x"));
+  folder.write("x.gltf", boxes().json("\"extensions\":{\"EXT_meshopt_compression\":{}},"));
   CHECK(
       contains(folder.error_of("x.gltf"), "buffer 0: has no data that is read, only that of EXT_meshopt_compression"));
 }
@@ -582,8 +582,8 @@ TEST_CASE("3MF: row vectors, component first, decimals as doubles", "[assembly]"
   REQUIRE(assembly.parts.size() == 2);
   CHECK(assembly.parts[0].name == "pair/box");
   CHECK(assembly.parts[1].name == "pair/box#2");
-  CHECK(Vec3d(assembly.parts[0].pose * Vec3d(1, 0, 0)) == Vec3d(10, 21, 30));
-  CHECK(Vec3d(assembly.parts[1].pose * Vec3d(0, 0, 0)) == Vec3d(10, 20 + 0.1000000000000001, 30));
+  CHECK((Vec3d(assembly.parts[0].pose * Vec3d(1, 0, 0)) == Vec3d(10, 21, 30)));
+  CHECK((Vec3d(assembly.parts[1].pose * Vec3d(0, 0, 0)) == Vec3d(10, 20 + 0.1000000000000001, 30)));
   CHECK(assembly.parts[1].pose.linear().determinant() == -1);
   const std::string digits = replaced(model(box_object(), two_items), "x=\"1\"", "x=\"0.1000000000000001\"");
   CHECK(load_assembly(write_model(folder, digits)).parts[0].object.mesh().vertices[1].x() == 0.1000000000000001);
@@ -613,7 +613,7 @@ TEST_CASE("3MF: types, relations, other model parts", "[assembly]") {
   write_zip(folder, {{"_rels/.rels", relations},
                      {"a/main.model", model("", other)},
                      {"b/other.model", model(box_object(), "", "unit=\"inch\"")}});
-  CHECK(contains(folder.error_of("x.3mf"), "is in in, the main model in mm, which is not read"));
+  CHECK(contains(folder.error_of("x.3mf"), "its unit is in, that of the main model mm, which is not read"));
   write_zip(folder, {{"_rels/.rels", relations}, {"a/main.model", model("", replaced(other, "/b/", "/../b/"))}});
   CHECK(contains(folder.error_of("x.3mf"), "which is not in the archive"));
   write_zip(folder, {{"_rels/.rels", relations}, {"a/main.model", model("", other)}});

@@ -75,7 +75,7 @@ class ThreeMfReader {
     if (!content) refuse("holds no '" + one_line(name) + "', so it is no 3MF, or not a whole one; save it anew");
     auto made = std::make_unique<ThreeMfModel>(path_ + ": " + one_line(name), *content);
     if (!result_.unit.empty() && made->unit() != result_.unit) {
-      made->refuse("is in " + made->unit() + ", the main model in " + result_.unit +
+      made->refuse("its unit is " + made->unit() + ", that of the main model " + result_.unit +
                    ", which is not read; save the file in one unit");
     }
     return *models_.emplace(name, std::move(made)).first->second;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "three_mf_model.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cchip/internal/geometry/decimal.hpp>
 #include <cmath>
@@ -103,7 +104,8 @@ pugi::xml_node ThreeMfModel::child(pugi::xml_node parent, const char* name) cons
 
 std::vector<pugi::xml_node> ThreeMfModel::children(pugi::xml_node parent, const char* name) const {
   std::vector<pugi::xml_node> all;
-  for (const pugi::xml_node found : parent.children((core_ + name).c_str())) all.push_back(found);
+  const std::string whole = core_ + name;  // the range keeps a pointer to it
+  for (const pugi::xml_node found : parent.children(whole.c_str())) all.push_back(found);
   return all;
 }
 
@@ -159,13 +161,13 @@ Mesh ThreeMfModel::mesh(pugi::xml_node mesh, const std::string& who, Allowance& 
       refuse(who + ": takes more memory than the file may ask for; split the file, or raise most_unpacked_bytes");
     }
   };
-  for (const pugi::xml_node point : child(mesh, "vertices").children((core_ + "vertex").c_str())) {
+  for (const pugi::xml_node point : children(child(mesh, "vertices"), "vertex")) {
     const std::string here = who + ": vertex " + std::to_string(made.vertices.size());
     room_for(sizeof(Vec3d));
     made.vertices.emplace_back(number(point, "x", here), number(point, "y", here), number(point, "z", here));
   }
   if (made.vertices.size() > UINT32_MAX) refuse(who + ": has too many vertices; split the file");
-  for (const pugi::xml_node triangle : child(mesh, "triangles").children((core_ + "triangle").c_str())) {
+  for (const pugi::xml_node triangle : children(child(mesh, "triangles"), "triangle")) {
     const std::string here = who + ": triangle " + std::to_string(made.faces.size());
     room_for(sizeof(Mesh::Face));
     Mesh::Face face;
