@@ -187,7 +187,7 @@ Run add_clash(CLI::App& app) {
   add_text(*command, "--junit", options.junit, "write the report as JUnit XML, a test case for each pair that meets");
   add_text(*command, "--accept", options.accept,
            "write rules that accept what parts do now, for --rules or the key rules of ASSEMBLY");
-  add_text(*command, "--unit", options.unit, "mm, cm, m, in or ft: that of the assembly's numbers");
+  add_text(*command, "--unit", options.unit, "um, mm, cm, m, in or ft: that of the assembly's numbers");
   add_text(*command, "--clearance", options.clearance,
            "parts without a rule must be this far apart (default: what ASSEMBLY says, or 0: they must not touch)");
   add_whole(*command, "--threads", options.threads, "threads (default 0: as many as there are cores)",

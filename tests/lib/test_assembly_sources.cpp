@@ -527,10 +527,10 @@ TEST_CASE("glTF: each mistake has its sentence", "[assembly]") {
   CHECK(contains(with("\"byteLength\":96", "\"byteLength\":99999"), "bufferView 0: reaches beyond its buffer"));
   CHECK(contains(with("base64,", "base64,*"), "its data URI is not base64"));
   CHECK(contains(with("base64,AAAA", "base64,"), "bytes, and says"));
-  Gltf nan = boxes();
+  Gltf broken = boxes();
   const std::vector<float> bad(1, std::numeric_limits<float>::quiet_NaN());
-  nan.binary.replace(12, 4, bytes_of(bad));
-  CHECK(contains(error(folder, nan), "accessor 0: element 1 is not a finite number"));
+  broken.binary.replace(12, 4, bytes_of(bad));
+  CHECK(contains(error(folder, broken), "accessor 0: element 1 is not a finite number"));
   for (const std::string uri : {"../x.bin", "/etc/passwd", "http://a/b", "..%2Fx.bin"}) {
     folder.write("x.gltf", boxes().json("\"uri\":\"" + uri + "\","));
     CHECK(contains(folder.error_of("x.gltf"), "is not in the folder of the file"));

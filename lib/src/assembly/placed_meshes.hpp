@@ -3,14 +3,11 @@
 /// What glTF and 3MF files hold: meshes, and where they are placed.
 #ifndef CCHIP_ASSEMBLY_PLACED_MESHES_HPP
 #define CCHIP_ASSEMBLY_PLACED_MESHES_HPP
-
 #include <Eigen/LU>
 #include <cchip/mesh.hpp>
 #include <cchip/pose.hpp>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -32,7 +29,6 @@ struct PlacedMeshes {
 class Allowance {
  public:
   explicit Allowance(std::uint64_t bytes) : left_(bytes) {}
-  std::uint64_t left() const { return left_; }
   /// False if there are not so many left.
   bool spend(std::uint64_t count, std::uint64_t bytes_each) {
     if (bytes_each != 0 && count > left_ / bytes_each) return false;
