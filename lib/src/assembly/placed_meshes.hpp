@@ -3,6 +3,7 @@
 /// What glTF and 3MF files hold: meshes, and where they are placed.
 #ifndef CCHIP_ASSEMBLY_PLACED_MESHES_HPP
 #define CCHIP_ASSEMBLY_PLACED_MESHES_HPP
+
 #include <Eigen/LU>
 #include <cchip/mesh.hpp>
 #include <cchip/pose.hpp>
