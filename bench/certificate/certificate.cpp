@@ -9,6 +9,7 @@
 #include <cchip/certify.hpp>
 #include <cchip/check.hpp>
 #include <cchip/device.hpp>
+#include <cchip/driver/model_device.hpp>
 #include <cchip/machines/simulated_chip.hpp>
 #include <cchip/program/progress.hpp>
 #include <cchip/program/seed.hpp>
@@ -174,6 +175,7 @@ class Benchmark {
 
 int main(int argc, char** argv) try {
   using namespace cchip::testing;
+  cchip::add_model_device();
   cchip::add_simulated_chip();
   CLI::App app{
       "Answers for pairs of meshes with their proofs: each certificate is made and checked; medians of sizes and "

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The model of the chip as a device, against the CPU and against the model's own query.
 #include <catch2/catch.hpp>
-#include <cchip/app/seed.hpp>
+#include <cchip/program/seed.hpp>
 #include <cchip/device.hpp>
 #include <cchip/driver/model_device.hpp>
 #include <cchip/internal/image/image.hpp>

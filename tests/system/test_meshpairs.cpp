@@ -7,6 +7,7 @@
 #include <cchip/program/usage_error.hpp>
 #include <map>
 
+#include "candidates.hpp"
 #include "engines.hpp"
 #include "mesh_source.hpp"
 #include "pose.hpp"

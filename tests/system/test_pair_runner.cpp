@@ -36,8 +36,8 @@ PairJob parallel_job(std::uint64_t row, double gap) {
   return job;
 }
 
-struct Run {
-  explicit Run(ScriptedEngine::Answer answer, RunOptions options = {}, const std::vector<std::string>& names = {})
+struct Bench {
+  explicit Bench(ScriptedEngine::Answer answer, RunOptions options = {}, const std::vector<std::string>& names = {})
       : engine(answer),
         runner(
             engine, options, names, [](const PairJob& job) { return "f.csv:" + std::to_string(job.row); }, out, err) {}
@@ -53,7 +53,7 @@ TEST_CASE("pair_runner: batches bound what is kept, order stays", "[system][pair
   RunOptions options;
   options.format = Format::csv;
   options.batch = 4;
-  Run run(definite_hit, options, {"id"});
+  Bench run(definite_hit, options, {"id"});
   for (std::uint64_t i = 1; i <= 10; ++i) {
     PairJob job = parallel_job(i, 0);
     job.passed = {std::to_string(i)};
@@ -70,10 +70,10 @@ TEST_CASE("pair_runner: batches bound what is kept, order stays", "[system][pair
 }
 
 TEST_CASE("pair_runner: a definite answer stands, an open one is resolved exactly", "[system][pair_runner]") {
-  Run definite(definite_hit);
+  Bench definite(definite_hit);
   definite.runner.add(parallel_job(2, 1e-12));  // apart, but the engine's answer counts
   CHECK(definite.runner.finish().hits == 1);
-  Run open(open_hit);
+  Bench open(open_hit);
   open.runner.add(parallel_job(2, 1e-12));
   open.runner.add(parallel_job(3, 0));
   const Summary summary = open.runner.finish();
@@ -84,7 +84,7 @@ TEST_CASE("pair_runner: a definite answer stands, an open one is resolved exactl
 TEST_CASE("pair_runner: what the hardware did, in every format", "[system][pair_runner]") {
   RunOptions options;
   options.format = Format::csv;
-  Run csv(hardware_no, options);
+  Bench csv(hardware_no, options);
   csv.runner.add(parallel_job(2, 1));
   const Summary summary = csv.runner.finish();
   CHECK(csv.out.str() ==
@@ -93,14 +93,14 @@ TEST_CASE("pair_runner: what the hardware did, in every format", "[system][pair_
   CHECK(to_line(summary) == "pairs=1 hits=0 mismatches=0 indefinite=0 beats_mean=11.00 clocks=0");
 
   options.format = Format::jsonl;
-  Run jsonl(hardware_no, options);
+  Bench jsonl(hardware_no, options);
   jsonl.runner.add(parallel_job(2, 1));
   jsonl.runner.finish();
   CHECK(jsonl.out.str() ==
         "{\"hit\":0,\"hw_hit\":0,\"hw_grid\":0,\"hw_definite\":1,\"axis\":\"edge 1 of A x edge 2 of B\",\"beats\":11,"
         "\"clock_in\":5,\"clock_out\":70}\n");
 
-  Run table(hardware_no);
+  Bench table(hardware_no);
   table.runner.add(parallel_job(2, 1));
   table.runner.finish();
   CHECK(table.out.str() ==
@@ -111,14 +111,14 @@ TEST_CASE("pair_runner: what the hardware did, in every format", "[system][pair_
 TEST_CASE("pair_runner: columns with our names are renamed, not overwritten", "[system][pair_runner]") {
   RunOptions options;
   options.format = Format::csv;
-  Run run(definite_hit, options, {"hit", "note", "note", "input_hit"});
+  Bench run(definite_hit, options, {"hit", "note", "note", "input_hit"});
   run.runner.finish();
   CHECK(lines(run.out.str()).at(0) ==
         "input_input_hit,input_note,note,input_hit,hit,hw_hit,hw_grid,hw_definite,axis,beats,clock_in,clock_out");
 }
 
 TEST_CASE("pair_runner: expected answers", "[system][pair_runner]") {
-  const auto add_both = [](Run& run) {
+  const auto add_both = [](Bench& run) {
     PairJob right = parallel_job(7, 0);
     right.expected = true;
     run.runner.add(std::move(right));
@@ -129,7 +129,7 @@ TEST_CASE("pair_runner: expected answers", "[system][pair_runner]") {
   };
   RunOptions options;
   options.compare = true;
-  Run table(definite_hit, options);
+  Bench table(definite_hit, options);
   CHECK(add_both(table).mismatches == 1);
   const auto rows = lines(table.out.str());
   REQUIRE(rows.size() == 2);
@@ -138,14 +138,14 @@ TEST_CASE("pair_runner: expected answers", "[system][pair_runner]") {
   CHECK(table.err.str().empty());
 
   options.format = Format::csv;
-  Run csv(definite_hit, options);
+  Bench csv(definite_hit, options);
   CHECK(add_both(csv).mismatches == 1);
   CHECK(lines(csv.out.str()).size() == 3);
   CHECK(csv.err.str() == "cchip: f.csv:8: expected hit 0, got 1\n");
 }
 
 TEST_CASE("pair_runner: the table shows control characters harmlessly", "[system][pair_runner]") {
-  Run run(definite_hit, {}, {"note"});
+  Bench run(definite_hit, {}, {"note"});
   PairJob job = parallel_job(2, 0);
   job.passed = {"two\nlines\x1b[31m"};
   run.runner.add(std::move(job));
