@@ -178,15 +178,16 @@ Run add_clash(CLI::App& app) {
   ClashOptions& options = *held;
   CLI::App* command = app.add_subcommand(
       "clash", "Is an assembly all right? Parts, poses and rules in; what overlaps, touches or is too near out");
-  add_text(*command, "ASSEMBLY", options.assembly,
-           "TOML file with parts and rules; or a folder of mesh files, or an OBJ with a part for each 'o'")
+  add_text(
+      *command, "ASSEMBLY", options.assembly,
+      "TOML file with parts and rules; or a folder of mesh files, an OBJ with a part for each 'o', glTF, GLB or 3MF")
       ->required();
   add_text(*command, "--rules", options.rules, "TOML file with more rules, which come last");
   add_text(*command, "--json", options.json, "write the report; - writes it to standard output in place of the table");
   add_text(*command, "--junit", options.junit, "write the report as JUnit XML, a test case for each pair that meets");
   add_text(*command, "--accept", options.accept,
            "write rules that accept what parts do now, for --rules or the key rules of ASSEMBLY");
-  add_text(*command, "--unit", options.unit, "mm, cm, m, in or ft: that of the assembly's numbers");
+  add_text(*command, "--unit", options.unit, "um, mm, cm, m, in or ft: that of the assembly's numbers");
   add_text(*command, "--clearance", options.clearance,
            "parts without a rule must be this far apart (default: what ASSEMBLY says, or 0: they must not touch)");
   add_whole(*command, "--threads", options.threads, "threads (default 0: as many as there are cores)",

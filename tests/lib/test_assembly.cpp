@@ -389,7 +389,7 @@ TEST_CASE("assembly: folders and OBJ files", "[assembly]") {
   CHECK(folder.error(obj + "o empty\n", "y.obj") ==
         "y.obj:16: the part 'empty' has no faces, so nothing can be said about it; remove this line or add its faces");
   CHECK(folder.error("v 0 0 0\no a\no b\n", "z.obj").find("no faces") != std::string::npos);
-  CHECK(folder.error("glTF", "z.glb").find("is no assembly; give a TOML file") != std::string::npos);
+  CHECK(folder.error("#usda 1.0", "z.usd").find("is no assembly; give a TOML file") != std::string::npos);
 }
 
 TEST_CASE("assembly: what is wrong with a file, where and what to do", "[assembly]") {
@@ -399,7 +399,7 @@ TEST_CASE("assembly: what is wrong with a file, where and what to do", "[assembl
   };
   check_error("unit = ", "x.toml:1: ");
   check_error("unit = \"mm\"\n", "there are no parts; add a table [[part]]");
-  check_error("unit = \"parsec\"\n" + part, "x.toml:1: key 'unit' is 'parsec', which is no unit here; write mm, cm");
+  check_error("unit = \"parsec\"\n" + part, "x.toml:1: key 'unit' is 'parsec', which is no unit here; write um, mm, cm");
   check_error("colour = 1\n" + part, "x.toml:1: key 'colour' is unknown; the keys here are unit, clearance");
   check_error("part = 1\n", "key 'part' must be a list of tables; head each with [[part]]");
   check_error("clearance = \"1\"\n" + part, "key 'clearance' must be a length that is at least 0");

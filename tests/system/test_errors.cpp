@@ -286,11 +286,13 @@ TEST_CASE("errors: values that look right", "[system][errors]") {
                                            "for example with `gmsh -2 part.STEP -o part.stl` or with FreeCAD");
   for (const auto& [end, name] : {std::pair<std::string, std::string>{"gltf", "glTF"}, {"3mf", "3MF"}}) {
     const std::string scene = folder.write("scene." + end, "<xml/>");
-    check_error({"collide", scene, cube},
-                "cchip: " + scene + ": is " + name +
-                    ", which is not read; convert it with trimesh, which keeps numbers, axes and the places of the "
-                    "parts: `python3 -c \"import trimesh; trimesh.load_mesh('scene." +
-                    end + "').export('part.obj', digits=17)\"`");
+    check_error(
+        {"collide", scene, cube},
+        "cchip: " + scene + ": is " + name +
+            ", which is not read; `cchip clash` judges the parts of .glb, .gltf and .3mf files; for one mesh convert "
+            "it with trimesh, which keeps numbers, axes and the places of the parts: `python3 -c \"import trimesh; "
+            "trimesh.load_mesh('scene." +
+            end + "').export('part.obj', digits=17)\"`");
   }
   const std::string scene = folder.write("scene.dae", "<xml/>");
   check_error({"collide", scene, cube},

@@ -12,6 +12,7 @@
 #include <cchip/object.hpp>
 #include <cchip/pose.hpp>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -56,7 +57,7 @@ struct Assembly {
   std::vector<AssemblyPart> parts;
   std::vector<AssemblyRule> rules;
   double clearance = 0;
-  std::string unit;                ///< mm, cm, m, in or ft; empty: not known
+  std::string unit;                ///< um, mm, cm, m, in or ft; empty: not known
   std::size_t faces_left_out = 0;  ///< with AssemblyLoadOptions::lenient
   std::vector<std::string> notes;  ///< of the files: what was left out, a line each
 };
@@ -65,11 +66,15 @@ struct AssemblyLoadOptions {
   std::string unit;      ///< of the assembly, in place of what the file says: its numbers are taken to be in this unit
   std::string rules;     ///< a TOML file whose rules come behind those of the assembly; empty: none
   bool lenient = false;  ///< as LoadOptions::lenient
+  /// As LoadOptions::most_unpacked_bytes; of glTF and 3MF the numbers of all meshes count.
+  std::uint64_t most_unpacked_bytes = std::uint64_t{1} << 32;
 };
 
 /// Reads an assembly: a TOML file by the schema of docs/cpp/clash.md; a folder, in which each mesh file is a part named
-/// as the file, in the coordinates of the assembly; or an OBJ, in which each `o` is a part. A name that is there
-/// already gets a number: "bolt", "bolt#2". Each mesh is read and built once.
+/// as the file, in the coordinates of the assembly; an OBJ, in which each `o` is a part; a glTF or GLB, in which each
+/// node with triangles of the chosen scene is one, named by the path of nodes, in metres; or a 3MF, in which each mesh
+/// that its build places is one, in its unit. A name that is there already gets a number: "bolt", "bolt#2". Each mesh
+/// is read and built once.
 /// \throws std::runtime_error one line: file, line if it has one, what is wrong, what to do. Fewer than two parts and a
 ///         part without a face are errors, too.
 Assembly load_assembly(const std::string& path, const AssemblyLoadOptions& options = {});

@@ -15,6 +15,7 @@
 #include "mesh_io/file_content.hpp"
 #include "mesh_io/other_formats.hpp"
 #include "obj_parts.hpp"
+#include "placed_meshes.hpp"
 #include "source.hpp"
 
 namespace cchip {
@@ -27,6 +28,12 @@ using assembly::PartSource;
 bool is_mesh_name(const std::string& name) {
   constexpr std::array<std::string_view, 4> ends = {".obj", ".off", ".ply", ".stl"};
   return std::find(ends.begin(), ends.end(), mesh_io::extension_of(mesh_io::name_inside(name))) != ends.end();
+}
+
+/// glTF, GLB and 3MF, which say what is placed where.
+bool is_placed_meshes(const std::string& name) {
+  constexpr std::array<std::string_view, 3> ends = {".gltf", ".glb", ".3mf"};
+  return std::find(ends.begin(), ends.end(), mesh_io::extension_of(name)) != ends.end();
 }
 
 /// A path that is relative to the folder of a file.
@@ -46,12 +53,16 @@ class Loader {
     std::error_code error;
     if (fs::is_directory(path, error)) {
       load_folder(path);
+    } else if (is_placed_meshes(path)) {
+      load_placed(path);
     } else if (mesh_io::extension_of(path) == ".toml") {
       load_toml(path);
     } else if (mesh_io::extension_of(mesh_io::name_inside(path)) == ".obj") {
       load_obj(path);
     } else {
-      refuse(path, "is no assembly; give a TOML file, a folder of mesh files, or an OBJ with a part for each 'o'");
+      refuse(path,
+             "is no assembly; give a TOML file, a folder of mesh files, a glTF, GLB or 3MF, or an "
+             "OBJ with a part for each 'o'");
     }
     if (assembly_.parts.size() < 2) {
       refuse(path, "holds one part, which cannot clash; give an assembly of at least two");
@@ -73,6 +84,7 @@ class Loader {
     LoadOptions options;
     options.lenient = options_.lenient;
     options.faces_left_out = &left_out;
+    options.most_unpacked_bytes = options_.most_unpacked_bytes;
     return options;
   }
 
@@ -128,6 +140,24 @@ class Loader {
     }
   }
 
+  void load_placed(const std::string& path) {
+    const bool is_3mf = mesh_io::extension_of(path) == ".3mf";
+    assembly::PlacedMeshes placed = is_3mf ? assembly::read_3mf(path, options_.most_unpacked_bytes)
+                                           : assembly::read_gltf(path, options_.most_unpacked_bytes);
+    if (assembly_.unit.empty()) assembly_.unit = placed.unit;
+    for (const std::string& note : placed.notes) assembly_.notes.push_back(path + ": " + note);
+    std::map<std::size_t, Object> built;  // each is used at least once
+    for (const auto& part : placed.parts) {
+      auto found = built.find(part.mesh);
+      if (found == built.end()) {
+        found =
+            built.emplace(part.mesh, build(std::move(placed.meshes[part.mesh]), path + ": part '" + part.name + "'"))
+                .first;
+      }
+      add_part(part.name, found->second, part.pose, {}, path);
+    }
+  }
+
   void load_toml(const std::string& path) {
     const AssemblySource source = assembly::read_toml(path, true);
     if (assembly_.unit.empty()) assembly_.unit = source.unit;
@@ -142,6 +172,10 @@ class Loader {
   }
 
   const Object& part_object(const std::string& path, const PartSource& part) {
+    if (is_placed_meshes(part.file)) {
+      throw std::runtime_error(part.place + ": " + part.file +
+                               " is an assembly of its own, no mesh; give it as ASSEMBLY, or save its parts as PLY");
+    }
     try {
       return object_of(beside(path, part.file));
     } catch (const std::runtime_error& error) {

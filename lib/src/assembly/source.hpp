@@ -35,7 +35,7 @@ AssemblySource read_toml(const std::string& path, bool with_parts);
 
 /// The length of a unit in millimetres; 0 if there is no such unit.
 double millimetres(const std::string& unit);
-/// "mm, cm, m, in or ft".
+/// "um, mm, cm, m, in or ft".
 extern const char* const units;
 
 }  // namespace cchip::assembly

@@ -13,15 +13,16 @@
 #include <vector>
 
 #include "mesh_io/file_content.hpp"
+#include "rotation.hpp"
 #include "source.hpp"
 
 namespace cchip::assembly {
 
-const char* const units = "mm, cm, m, in or ft";
+const char* const units = "um, mm, cm, m, in or ft";
 
 double millimetres(const std::string& unit) {
-  constexpr std::pair<std::string_view, double> known[] = {
-      {"mm", 1}, {"cm", 10}, {"m", 1000}, {"in", 25.4}, {"ft", 304.8}};
+  constexpr std::pair<std::string_view, double> known[] = {{"um", 0.001}, {"mm", 1},    {"cm", 10},
+                                                           {"m", 1000},   {"in", 25.4}, {"ft", 304.8}};
   for (const auto& [name, length] : known) {
     if (unit == name) return length;
   }
@@ -175,26 +176,11 @@ Pose pose_of_matrix(const Table& part) {
   return pose;
 }
 
-/// In the homogeneous form, so that quarter turns and thirds are exact although the quaternion is rounded.
-Eigen::Matrix3d rotation_of(const Table& part) {
+Eigen::Matrix3d rotation_in(const Table& part) {
   const std::vector<double> q = part.numbers("quaternion", {4});
-  const double x = q[0];
-  const double y = q[1];
-  const double z = q[2];
-  const double w = q[3];
-  const double xx = x * x;
-  const double yy = y * y;
-  const double zz = z * z;
-  const double ww = w * w;
-  const double square = (xx + yy) + (zz + ww);
-  if (!(square > 0x1p-500 && square < 0x1p500)) {
-    part.refuse_value("quaternion", "has no length that can be used; write x, y, z, w of a rotation");
-  }
-  Eigen::Matrix3d r;
-  r << (ww - zz) + (xx - yy), 2 * (x * y - w * z), 2 * (x * z + w * y),  //
-      2 * (x * y + w * z), (ww - zz) + (yy - xx), 2 * (y * z - w * x),   //
-      2 * (x * z - w * y), 2 * (y * z + w * x), (ww - xx) + (zz - yy);
-  return r / square;
+  const std::optional<Eigen::Matrix3d> rotation = rotation_of({q[0], q[1], q[2], q[3]});
+  if (!rotation) part.refuse_value("quaternion", "has no length that can be used; write x, y, z, w of a rotation");
+  return *rotation;
 }
 
 Pose pose_of(const Table& part) {
@@ -205,7 +191,7 @@ Pose pose_of(const Table& part) {
   }
   if (kind != "quaternion") return Pose(make_pose(part.vector("xyz"), part.vector("rpy")));
   Pose pose = Pose::Identity();
-  pose.linear() = rotation_of(part);
+  pose.linear() = rotation_in(part);
   pose.translation() = part.vector("xyz");
   return pose;
 }

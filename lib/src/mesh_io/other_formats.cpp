@@ -16,13 +16,14 @@ namespace {
 
 using namespace std::string_view_literals;
 
-// scripts/run test-ply runs the commands in Python, Gmsh and MeshLab, tests/system/test_file_messages.cpp those of assimp.
-// In a remedy % stands for the name of the file.
+// scripts/run test-ply runs the commands in Python, Gmsh and MeshLab, tests/system/test_file_messages.cpp those of
+// assimp. In a remedy % stands for the name of the file.
 constexpr std::string_view by_gmsh = "mesh it first, for example with `gmsh -2 % -o part.stl` or with FreeCAD";
 constexpr std::string_view by_ifcopenshell =
     "write each building element as a mesh of its own with IfcOpenShell, which gives vertices and faces in metres";
 constexpr std::string_view by_trimesh =
-    "convert it with trimesh, which keeps numbers, axes and the places of the parts: `python3 -c \"import trimesh; "
+    "`cchip clash` judges the parts of .glb, .gltf and .3mf files; for one mesh convert it with trimesh, which keeps "
+    "numbers, axes and the places of the parts: `python3 -c \"import trimesh; "
     "trimesh.load_mesh('%').export('part.obj', digits=17)\"`";
 constexpr std::string_view by_meshlab =
     "convert it to PLY with MeshLab, which keeps axes and units: File, Import Mesh, then File, Export Mesh As "

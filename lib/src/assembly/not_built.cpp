@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Readers that this build of the library does not have.
+#include <stdexcept>
+
+#include "placed_meshes.hpp"
+
+namespace cchip::assembly {
+
+#ifndef CCHIP_WITH_GLTF
+PlacedMeshes read_gltf(const std::string& path, std::uint64_t) {
+  throw std::runtime_error(path +
+                           ": is glTF, and this build of the library has no reader for it; build it with "
+                           "nlohmann-json (Debian's nlohmann-json3-dev)");
+}
+#endif
+#ifndef CCHIP_WITH_3MF
+PlacedMeshes read_3mf(const std::string& path, std::uint64_t) {
+  throw std::runtime_error(path +
+                           ": is 3MF, and this build of the library has no reader for it; build it with libzip "
+                           "and pugixml (Debian's libzip-dev and libpugixml-dev)");
+}
+#endif
+
+}  // namespace cchip::assembly
