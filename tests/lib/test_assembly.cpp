@@ -399,7 +399,8 @@ TEST_CASE("assembly: what is wrong with a file, where and what to do", "[assembl
   };
   check_error("unit = ", "x.toml:1: ");
   check_error("unit = \"mm\"\n", "there are no parts; add a table [[part]]");
-  check_error("unit = \"parsec\"\n" + part, "x.toml:1: key 'unit' is 'parsec', which is no unit here; write um, mm, cm");
+  check_error("unit = \"parsec\"\n" + part,
+              "x.toml:1: key 'unit' is 'parsec', which is no unit here; write um, mm, cm");
   check_error("colour = 1\n" + part, "x.toml:1: key 'colour' is unknown; the keys here are unit, clearance");
   check_error("part = 1\n", "key 'part' must be a list of tables; head each with [[part]]");
   check_error("clearance = \"1\"\n" + part, "key 'clearance' must be a length that is at least 0");
