@@ -260,7 +260,8 @@ class Benchmark {
       if (*other.module == 0) fmt::print("{}: not in this build; {} brings it\n", other.name, other.remedy);
     }
     fmt::print("CGAL and ODE: no distance of two meshes\n");
-    if (options_.python.empty()) fmt::print("trueform, MeshLib: not asked; scripts/run peers brings them, --python asks\n");
+    if (options_.python.empty())
+      fmt::print("trueform, MeshLib: not asked; scripts/run peers brings them, --python asks\n");
     DistanceCount ours;
     DistanceCount theirs;
     for (const auto& [name, classes] : counts_) {
@@ -301,7 +302,8 @@ int main(int argc, char** argv) try {
   app.add_option("--pairs", o.pairs, "pairs of meshes")
       ->delimiter(',')
       ->check(CLI::IsMember(cchip::testing::mesh_pair_names()));
-  app.add_option("--python", o.python, "a Python with trueform or MeshLib; scripts/run peers: build/touching/bin/python");
+  app.add_option("--python", o.python,
+                 "a Python with trueform or MeshLib; scripts/run peers: build/touching/bin/python");
   app.add_option("--python-queries", o.python_queries, "file for the queries that it reads")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   return cchip::testing::Benchmark(o).run();

@@ -540,7 +540,8 @@ int main(int argc, char** argv) try {
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   app.add_option("--seed", o.seed, "repeats the paths (or CCHIP_SEED)")->capture_default_str();
-  app.add_option("--robots", o.robots, "folder of the robots, as scripts/run robots installs it")->capture_default_str();
+  app.add_option("--robots", o.robots, "folder of the robots, as scripts/run robots installs it")
+      ->capture_default_str();
   app.add_option("--csv", o.csv, "the same figures as a file; empty: none")->capture_default_str();
   app.add_flag("--slow", o.slow, "ask libraries, too, that take more than a minute");
   auto* quick = app.add_flag("--quick", "20 paths in one pass, for a first look; its ratios are rough");

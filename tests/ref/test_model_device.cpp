@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The model of the chip as a device, against the CPU and against the model's own query.
 #include <catch2/catch.hpp>
-#include <cchip/program/seed.hpp>
 #include <cchip/device.hpp>
 #include <cchip/driver/model_device.hpp>
 #include <cchip/internal/image/image.hpp>
 #include <cchip/internal/image/place.hpp>
 #include <cchip/internal/model/broad_phase.hpp>
+#include <cchip/program/seed.hpp>
 
 #include "answers.hpp"
 #include "bvh_meshes.hpp"
