@@ -395,12 +395,13 @@ TEST_CASE("mesh file: errors are one line with file, line, cause and remedy", "[
         "; mesh it first, for example with `gmsh -2 part.step -o part.stl`");
   check(folder.write("scene.dae", "<COLLADA>"), ": is COLLADA, which is not read", "; convert it to PLY with MeshLab");
   for (const char* const name : {"scene.glb", "scene.gltf", "no_end"}) {
-    check(folder.write(name, "glTF"), ": is glTF, which is not read", "; for one mesh convert it with trimesh");
+    check(folder.write(name, "glTF"), ": is glTF, which is not read",
+          "; `cchip clash` judges the parts of .glb, .gltf and .3mf files; for one mesh convert it with trimesh");
   }
   // 3MF is a folder packed by zip.
   for (const char* const name : {"real.3mf", "REAL.3MF"}) {
     check(folder.write(name, "PK\3\4 and so on"), ": is 3MF, which is not read",
-          "; for one mesh convert it with trimesh");
+          "; `cchip clash` judges the parts of .glb, .gltf and .3mf files; for one mesh convert it with trimesh");
   }
   check(folder.write("notes.txt", "hello\n"), ": cannot be read as a mesh");
   const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
