@@ -14,6 +14,7 @@
 #include <atomic>
 #include <cchip/cchip.hpp>
 #include <cchip/certificate_file.hpp>
+#include <cchip/driver/model_device.hpp>
 #include <cchip/html_page.hpp>
 #include <cchip/internal/judge/brute_force.hpp>
 #include <cerrno>
