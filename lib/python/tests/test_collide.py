@@ -320,7 +320,7 @@ def test_a_child_process_continues_with_the_objects_of_its_parent():
 
 def test_names():
     assert open_device().name == "cpu" and collisionchip.device_names()[0] == "cpu"
-    assert collisionchip.__version__ in (pathlib.Path(__file__).parents[2] / "CMakeLists.txt").read_text()
+    assert collisionchip.__version__ in (pathlib.Path(__file__).parents[3] / "CMakeLists.txt").read_text()
     assert "12 faces" in repr(CUBE) and "no hit" in repr(collide(CUBE, None, CUBE, shift(2)))
 
 

@@ -72,7 +72,7 @@ def test_ignored_groups_filter():
 
 def test_errors():
     scene, _ = row_of_cubes(3)
-    for call in (scene.remove, scene.pose, scene.touching, scene.object, lambda i: scene.set_pose(i, None),
+    for call in (scene.remove, scene.pose, scene.contacts, scene.object, lambda i: scene.set_pose(i, None),
                  lambda i: scene.set_ignored(i, 1), scene.set_groups):
         with pytest.raises(ValueError, match="9"):
             call(9)
