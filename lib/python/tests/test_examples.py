@@ -10,7 +10,7 @@ import sys
 import pytest
 
 ROOT = pathlib.Path(__file__).parents[3]
-EXAMPLES = ROOT / "python/examples"
+EXAMPLES = ROOT / "lib/python/examples"
 
 
 def run(*command):
