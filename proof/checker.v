@@ -1,0 +1,317 @@
+(* SPDX-License-Identifier: Apache-2.0 *)
+(** The checker of certificates (docs/cpp/certificates.md), a program over integers. *)
+Require Import ZArith List Bool Mergesort Orders.
+From Certificates Require Import statement.
+Import ListNotations.
+Open Scope Z_scope.
+
+(** * Certificates *)
+
+Inductive side := SideA | SideB.
+Record edge := Edge { edge_of : side; edge_to : nat }.
+Inductive reason :=
+| Meet
+| Touch (direction : triple Z)
+| Cross (e1 e2 e3 : edge).
+Inductive cell :=
+| Split (which : side) (at_ : Z)
+| Separated (direction : triple Z)
+| Shared (index_a index_b : Z) (weights_a weights_b : list Z) (why : reason).
+
+Record certificate := Certificate {
+  claimed : claim;
+  order_a : list Z;
+  order_b : list Z;
+  cells : list cell }.
+
+(** * Vertices as integers: all are multiplied by the same power of two *)
+
+Definition whole (e : Z) (n : number) : Z :=
+  if mantissa n =? 0 then 0 else Z.shiftl (mantissa n) (exponent n - e).
+(** m 2^e is a multiple of 2^e0. *)
+Definition fits (e : Z) (n : number) : bool := (mantissa n =? 0) || (e <=? exponent n).
+Definition least_exponent (ns : list number) : option Z :=
+  fold_left (fun e n => if mantissa n =? 0 then e
+                        else match e with None => Some (exponent n) | Some e => Some (Z.min e (exponent n)) end) ns None.
+
+Definition items {T} (t : triple T) : list T := [x t; y t; z t].
+Definition map3 {S T} (f : S -> T) (t : triple S) : triple T := Triple (f (x t)) (f (y t)) (f (z t)).
+Definition dot (d p : triple Z) : Z := x d * x p + y d * y p + z d * z p.
+
+Record part := Part { index : Z; number_of : Z; corners : list (triple Z) }.
+
+Definition coordinate_z (r : triple Z * Z) (v : triple Z) : Z := dot (fst r) v + snd r.
+Definition posed_z (p : triple (triple Z * Z)) (v : triple Z) : triple Z :=
+  map3 (fun r => coordinate_z r v) p.
+(** Coordinates of the mesh are multiplied by 2^-ev, those of the matrix by 2^-er. *)
+Definition whole_pose (ev er : Z) (p : pose) : triple (triple Z * Z) :=
+  map3 (fun r => (map3 (whole er) (entries r), whole (ev + er) (shift r))) p.
+Fixpoint place (ev : Z) (p : triple (triple Z * Z)) (i : Z) (m : mesh) : list part :=
+  match m with
+  | [] => []
+  | f :: rest => Part i (number_in_file f) (map (fun v => posed_z p (map3 (whole ev) v)) (vertices f))
+                 :: place ev p (i + 1) rest
+  end.
+
+Definition numbers_of_mesh (m : mesh) : list number := flat_map (fun f => flat_map items (vertices f)) m.
+Definition matrix_of (p : pose) : list number := flat_map (fun r => items (entries r)) (items p).
+Definition shifts_of (p : pose) : list number := map shift (items p).
+Definition or_zero (e : option Z) : Z := match e with None => 0 | Some e => e end.
+Definition least_of_two (a b : option Z) : option Z :=
+  match a, b with None, e => e | e, None => e | Some a, Some b => Some (Z.min a b) end.
+
+Definition exponents (s : scene) : Z * Z :=
+  let ev := or_zero (least_of_two (least_exponent (numbers_of_mesh (mesh_a s)))
+                                  (least_exponent (numbers_of_mesh (mesh_b s)))) in
+  let er := least_exponent (matrix_of (pose_a s) ++ matrix_of (pose_b s)) in
+  let et := least_exponent (shifts_of (pose_a s) ++ shifts_of (pose_b s)) in
+  (ev, or_zero (least_of_two er (match et with None => None | Some e => Some (e - ev) end))).
+
+Definition fits_mesh (ev : Z) (m : mesh) : bool :=
+  forallb (fun f => forallb (fun v => forallb (fits ev) (items v)) (vertices f)) m.
+Definition fits_pose (ev er : Z) (p : pose) : bool :=
+  forallb (fun r => forallb (fits er) (items (entries r)) && fits (ev + er) (shift r)) (items p).
+Definition fits_scene (ev er : Z) (s : scene) : bool :=
+  fits_mesh ev (mesh_a s) && fits_mesh ev (mesh_b s) && fits_pose ev er (pose_a s) && fits_pose ev er (pose_b s).
+
+(** Triangles and quads only. *)
+Definition is_shape (f : face) : bool :=
+  match vertices f with [_; _; _] | [_; _; _; _] => true | _ => false end.
+
+(** * Cells *)
+
+Definition is_zero (d : triple Z) : bool := (x d =? 0) && (y d =? 0) && (z d =? 0).
+
+Definition highest (d : triple Z) (ps : list (triple Z)) : option Z :=
+  fold_left (fun top p => match top with None => Some (dot d p) | Some v => Some (Z.max v (dot d p)) end) ps None.
+(** Along d all points ps lie below all points qs: [below v w] compares. *)
+Definition all_below (below : Z -> Z -> bool) (d : triple Z) (ps qs : list (triple Z)) : bool :=
+  negb (is_zero d) &&
+  match highest d ps with None => false | Some top => forallb (fun q => below top (dot d q)) qs end.
+
+Fixpoint sum_z (ws : list Z) : Z := match ws with [] => 0 | w :: rest => w + sum_z rest end.
+Fixpoint weighted_z (ws vs : list Z) : Z :=
+  match ws, vs with w :: ws, v :: vs => w * v + weighted_z ws vs | _, _ => 0 end.
+Fixpoint same_length {S T} (l : list S) (m : list T) : bool :=
+  match l, m with [], [] => true | _ :: l, _ :: m => same_length l m | _, _ => false end.
+
+Definition same_point (wa wb : list Z) (pa pb : list (triple Z)) : bool :=
+  let ta := sum_z wa in
+  let tb := sum_z wb in
+  (0 <? ta) && (0 <? tb) && same_length wa pa && same_length wb pb &&
+  (weighted_z wa (map x pa) * tb =? weighted_z wb (map x pb) * ta) &&
+  (weighted_z wa (map y pa) * tb =? weighted_z wb (map y pb) * ta) &&
+  (weighted_z wa (map z pa) * tb =? weighted_z wb (map z pb) * ta).
+
+Definition vector (pa pb : list (triple Z)) (e : edge) : option (triple Z) :=
+  let ps := match edge_of e with SideA => pa | SideB => pb end in
+  match nth_error ps 0, nth_error ps (edge_to e) with
+  | Some p, Some q => Some (Triple (x q - x p) (y q - y p) (z q - z p))
+  | _, _ => None
+  end.
+Definition determinant (a b c : triple Z) : Z :=
+  x a * (y b * z c - z b * y c) + y a * (z b * x c - x b * z c) + z a * (x b * y c - y b * x c).
+
+Definition at_least (least : Z) (ws : list Z) : bool := forallb (fun w => least <=? w) ws.
+
+Definition reason_holds (why : reason) (wa wb : list Z) (pa pb : list (triple Z)) : bool :=
+  match why with
+  | Meet => at_least 0 wa && at_least 0 wb
+  | Touch d => at_least 0 wa && at_least 0 wb && all_below Z.leb d pa pb
+  | Cross e1 e2 e3 =>
+    at_least 1 wa && at_least 1 wb &&
+    match vector pa pb e1, vector pa pb e2, vector pa pb e3 with
+    | Some a, Some b, Some c => negb (determinant a b c =? 0)
+    | _, _, _ => false
+    end
+  end.
+
+Inductive kind := Meets | Touches | Crosses.
+Record entry := Entry { key_a : Z; key_b : Z; kind_of : kind }.
+Definition kind_of_reason (why : reason) : kind :=
+  match why with Meet => Meets | Touch _ => Touches | Cross _ _ _ => Crosses end.
+
+(** Parts at the places [from], [from] + 1, ... of the order. *)
+Record group := Group { from : Z; parts : list part }.
+
+(** The first n of a list, in reverse before [taken], and the rest. *)
+Fixpoint cut {T} (n : Z) (taken rest : list T) : list T * list T :=
+  if n <=? 0 then (taken, rest)
+  else match rest with [] => (taken, []) | a :: rest => cut (n - 1) (a :: taken) rest end.
+
+Definition halves (g : group) (at_ : Z) : option (group * group) :=
+  match cut (at_ - from g) [] (parts g) with
+  | (a :: first, b :: second) => Some (Group (from g) (rev_append (a :: first) []), Group at_ (b :: second))
+  | _ => None
+  end.
+
+(** What one cell leaves to prove, and the entries that it finds. *)
+Definition step (c : cell) (ga gb : group) : option (list (group * group) * list entry) :=
+  match c with
+  | Split SideA at_ =>
+    match halves ga at_ with Some (first, second) => Some ([(first, gb); (second, gb)], []) | None => None end
+  | Split SideB at_ =>
+    match halves gb at_ with Some (first, second) => Some ([(ga, first); (ga, second)], []) | None => None end
+  | Separated d =>
+    if all_below Z.ltb d (flat_map corners (parts ga)) (flat_map corners (parts gb)) then Some ([], []) else None
+  | Shared i j wa wb why =>
+    match parts ga, parts gb with
+    | [f], [g] =>
+      if (index f =? i) && (index g =? j) && same_point wa wb (corners f) (corners g)
+         && reason_holds why wa wb (corners f) (corners g)
+      then Some ([], [Entry (number_of f) (number_of g) (kind_of_reason why)]) else None
+    | _, _ => None
+    end
+  end.
+
+Inductive outcome := Done (found : list entry) | Failed (from_cell : list cell).
+
+Fixpoint run (cs : list cell) (todo : list (group * group)) (found : list entry) : outcome :=
+  match cs, todo with
+  | [], [] => Done found
+  | c :: rest, (ga, gb) :: todo =>
+    match step c ga gb with
+    | Some (more, entries) => run rest (more ++ todo) (entries ++ found)
+    | None => Failed cs
+    end
+  | _, _ => Failed cs
+  end.
+
+(** * Orders *)
+
+Module PlaceOrder <: TotalLeBool.
+  Definition t := (Z * Z)%type.
+  Definition leb (a b : t) := fst a <=? fst b.
+  Theorem leb_total : forall a b, leb a b = true \/ leb b a = true.
+  Proof. intros a b. unfold leb. rewrite !Z.leb_le. destruct (Z.le_ge_cases (fst a) (fst b)); auto. Qed.
+End PlaceOrder.
+Module PlaceSort := Sort PlaceOrder.
+
+Module PartOrder <: TotalLeBool.
+  Definition t := (Z * part)%type.
+  Definition leb (a b : t) := fst a <=? fst b.
+  Theorem leb_total : forall a b, leb a b = true \/ leb b a = true.
+  Proof. intros a b. unfold leb. rewrite !Z.leb_le. destruct (Z.le_ge_cases (fst a) (fst b)); auto. Qed.
+End PartOrder.
+Module PartSort := Sort PartOrder.
+
+Fixpoint numbered {T} (i : Z) (l : list T) : list (T * Z) :=
+  match l with [] => [] | a :: rest => (a, i) :: numbered (i + 1) rest end.
+(** Are these i, i + 1, ... for each of the parts, and no more? *)
+Fixpoint counts {T} (i : Z) (l : list (Z * T)) (ps : list part) : bool :=
+  match l, ps with
+  | [], [] => true
+  | (a, _) :: l, _ :: ps => (a =? i) && counts (i + 1) l ps
+  | _, _ => false
+  end.
+
+(** The parts in the order of the certificate: the place of each part, then the parts by places. *)
+Definition ordered (order : list Z) (ps : list part) : option (list part) :=
+  let places := PlaceSort.sort (numbered 0 order) in
+  match ps with
+  | [] => None
+  | _ => if counts 0 places ps then Some (map snd (PartSort.sort (combine (map snd places) ps))) else None
+  end.
+
+(** * The claim *)
+
+Module EntryOrder <: TotalLeBool.
+  Definition t := entry.
+  Definition leb (a b : t) := (key_a a <? key_a b) || ((key_a a =? key_a b) && (key_b a <=? key_b b)).
+  Theorem leb_total : forall a b, leb a b = true \/ leb b a = true.
+  Proof.
+    intros a b. unfold leb. rewrite !orb_true_iff, !andb_true_iff, !Z.ltb_lt, !Z.eqb_eq, !Z.leb_le.
+    destruct (Z.lt_trichotomy (key_a a) (key_a b)) as [H | [H | H]]; auto.
+    destruct (Z.le_ge_cases (key_b a) (key_b b)); auto.
+  Qed.
+End EntryOrder.
+Module EntrySort := Sort EntryOrder.
+
+(** All entries of two faces of the files. *)
+Record pair_found := PairFound { pair_a : Z; pair_b : Z; crosses : bool; meets_only : bool }.
+
+Definition add_entry (e : entry) (gs : list pair_found) : list pair_found :=
+  let c := match kind_of e with Crosses => true | _ => false end in
+  let m := match kind_of e with Meets => true | _ => false end in
+  match gs with
+  | g :: rest =>
+    if (key_a e =? pair_a g) && (key_b e =? pair_b g)
+    then PairFound (pair_a g) (pair_b g) (c || crosses g) (m || meets_only g) :: rest
+    else PairFound (key_a e) (key_b e) c m :: gs
+  | [] => [PairFound (key_a e) (key_b e) c m]
+  end.
+(** The accumulator has the greatest pair first: [found] must be sorted, greatest first. *)
+Definition pairs_of (found : list entry) : list pair_found :=
+  fold_left (fun gs e => add_entry e gs) (rev_append (EntrySort.sort found) []) [].
+
+Fixpoint ascend (gs : list pair_found) : bool :=
+  match gs with
+  | g :: ((h :: _) as rest) =>
+    ((pair_a g <? pair_a h) || ((pair_a g =? pair_a h) && (pair_b g <? pair_b h))) && ascend rest
+  | _ => true
+  end.
+
+Definition is_told (c : claim) (g : pair_found) : bool := crosses g || (all c && negb (meets_only g)).
+Definition counted (c : claim) (g : pair_found) : bool := negb (only_crossing c) || crosses g.
+
+Definition fulfils (c : claim) (g : pair_found) (k : contact) : bool :=
+  (face_a k =? pair_a g) && (face_b k =? pair_b g) &&
+  match told k with
+  | None => true
+  | Some Apart => false
+  | Some Touching => is_told c g && negb (crosses g)
+  | Some Crossing => crosses g
+  end.
+Fixpoint all_fulfil (c : claim) (gs : list pair_found) (ks : list contact) : bool :=
+  match gs, ks with
+  | [], [] => true
+  | g :: gs, k :: ks => fulfils c g k && all_fulfil c gs ks
+  | _, _ => false
+  end.
+
+Definition claim_follows (c : claim) (gs : list pair_found) : bool :=
+  ascend gs &&
+  (negb (only_crossing c) || forallb (is_told c) gs) &&
+  all_fulfil c (filter (counted c) gs) (contacts c) &&
+  match relation_of_meshes c with
+  | None => true
+  | Some Crossing => existsb crosses gs
+  | Some Touching => all c && match gs with [] => false | _ => true end
+                     && forallb (fun g => is_told c g && negb (crosses g)) gs
+  | Some Apart => all c && match gs with [] => true | _ => false end
+  end.
+
+(** * All together *)
+
+Inductive verdict :=
+| Accepted
+| ScaleFault | ShapeFault | OrderFault | CellsFault (from_cell : list cell) | ClaimFault.
+
+Definition conclude (c : certificate) (o : outcome) : verdict :=
+  match o with
+  | Failed rest => CellsFault rest
+  | Done found => if claim_follows (claimed c) (pairs_of found) then Accepted else ClaimFault
+  end.
+
+Definition check_parts (c : certificate) (pa pb : list part) : verdict :=
+  if all (claimed c) then
+    match ordered (order_a c) pa, ordered (order_b c) pb with
+    | Some sa, Some sb => conclude c (run (cells c) [(Group 0 sa, Group 0 sb)] [])
+    | _, _ => OrderFault
+    end
+  else
+    match order_a c, order_b c, cells c, contacts (claimed c) with
+    | [], [], [Shared i j _ _ _], [_] =>
+      match find (fun f => index f =? i) pa, find (fun g => index g =? j) pb with
+      | Some f, Some g => conclude c (run (cells c) [(Group 0 [f], Group 0 [g])] [])
+      | _, _ => CellsFault (cells c)
+      end
+    | _, _, _, _ => OrderFault
+    end.
+
+Definition check (s : scene) (c : certificate) : verdict :=
+  let (ev, er) := exponents s in
+  if negb (fits_scene ev er s) then ScaleFault
+  else if negb (forallb is_shape (mesh_a s) && forallb is_shape (mesh_b s)) then ShapeFault
+  else check_parts c (place ev (whole_pose ev er (pose_a s)) 0 (mesh_a s))
+                     (place ev (whole_pose ev er (pose_b s)) 0 (mesh_b s)).
