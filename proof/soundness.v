@@ -1,0 +1,538 @@
+(* SPDX-License-Identifier: Apache-2.0 *)
+(** Accepted implies true: the theorem [accepted_holds] at the end. *)
+Require Import ZArith QArith Qpower Lqa Lia List Bool Permutation.
+From Certificates Require Import statement checker geometry.
+Import ListNotations.
+Open Scope Q_scope.
+
+(** * Scaling: vertices as integers have the relations of the vertices themselves *)
+
+Lemma whole_value e n : fits e n = true -> inject_Z (whole e n) == value n * Qpower 2 (- e).
+Proof.
+  unfold fits, whole, value. destruct (Z.eqb_spec (mantissa n) 0) as [E | E].
+  - rewrite E. intros _. change (inject_Z 0) with 0. ring.
+  - cbn. intros L. apply Z.leb_le in L. rewrite Z.shiftl_mul_pow2 by lia.
+    rewrite inject_Z_mult, Zpower_Qpower by lia. change (inject_Z 2) with 2.
+    rewrite <- Qmult_assoc, <- Qpower_plus by discriminate.
+    now replace (exponent n + - e)%Z with (exponent n - e)%Z by lia.
+Qed.
+
+Definition factor (ev er : Z) : Q := Qpower 2 (- (ev + er)).
+Lemma factor_positive ev er : 0 < factor ev er.
+Proof. unfold factor. apply Qpower_0_lt. reflexivity. Qed.
+
+Lemma fits_items e (t : triple number) : forallb (fits e) (items t) = true ->
+  fits e (x t) = true /\ fits e (y t) = true /\ fits e (z t) = true.
+Proof. cbn. rewrite !andb_true_iff. tauto. Qed.
+
+Lemma coordinate_whole ev er r v :
+  forallb (fits er) (items (entries r)) = true -> fits (ev + er) (shift r) = true ->
+  forallb (fits ev) (items v) = true ->
+  inject_Z (coordinate_z (map3 (whole er) (entries r), whole (ev + er) (shift r)) (map3 (whole ev) v))
+  == factor ev er * coordinate r v.
+Proof.
+  intros R S V. apply fits_items in R. apply fits_items in V. destruct R as (R1 & R2 & R3), V as (V1 & V2 & V3).
+  unfold coordinate_z, dot, map3, coordinate; cbn [fst snd x y z].
+  rewrite !inject_Z_plus, !inject_Z_mult, !whole_value by assumption.
+  unfold factor. replace (- (ev + er))%Z with (- ev + - er)%Z by lia.
+  rewrite !Qpower_plus by discriminate. ring.
+Qed.
+
+(** The points Xs are the points ps times s. *)
+Definition similar (s : Q) (Xs ps : list point) : Prop :=
+  length Xs = length ps /\ forall ws,
+    weighted ws (map x Xs) == s * weighted ws (map x ps) /\
+    weighted ws (map y Xs) == s * weighted ws (map y ps) /\
+    weighted ws (map z Xs) == s * weighted ws (map z ps).
+
+Lemma similar_map {T} s (F G : T -> point) vs :
+  (forall v, In v vs -> x (F v) == s * x (G v) /\ y (F v) == s * y (G v) /\ z (F v) == s * z (G v)) ->
+  similar s (map F vs) (map G vs).
+Proof.
+  intros H. split; [now rewrite !map_length |]. induction vs as [| v vs IH]; intros [| w ws]; cbn;
+    try (repeat split; ring).
+  destruct (H v (or_introl eq_refl)) as (X & Y & Z).
+  destruct (IH (fun u I => H u (or_intror I)) ws) as (X' & Y' & Z').
+  rewrite X, Y, Z, X', Y', Z'. repeat split; ring.
+Qed.
+
+Definition times (s : Q) (t : point) : point := Triple (s * x t) (s * y t) (s * z t).
+
+Lemma hull_times s Xs ps p : similar s Xs ps -> hull ps p -> hull Xs (times s p).
+Proof.
+  intros (L & W) (ws & L' & N & S & X & Y & Z). exists ws. destruct (W ws) as (Wx & Wy & Wz).
+  rewrite L. repeat split; auto; cbn; rewrite ?Wx, ?Wy, ?Wz, ?X, ?Y, ?Z; reflexivity.
+Qed.
+Lemma hull_divided s Xs ps p : 0 < s -> similar s Xs ps -> hull Xs p -> hull ps (times (/ s) p).
+Proof.
+  intros P (L & W) (ws & L' & N & S & X & Y & Z). exists ws. destruct (W ws) as (Wx & Wy & Wz).
+  rewrite <- L. repeat split; auto; cbn; rewrite <- ?X, <- ?Y, <- ?Z, ?Wx, ?Wy, ?Wz; field; lra.
+Qed.
+
+Section Similar.
+  Variables (s : Q) (Xs Ys ps qs : list point).
+  Hypotheses (P : 0 < s) (A : similar s Xs ps) (B : similar s Ys qs).
+
+  Lemma moved_times t : meet_moved t ps qs -> meet_moved (times s t) Xs Ys.
+  Proof.
+    intros (p & q & Hp & Hq & X & Y & Z). exists (times s p), (times s q).
+    split; [eapply hull_times; eauto |]. split; [eapply hull_times; eauto |].
+    cbn. rewrite X, Y, Z. repeat split; ring.
+  Qed.
+  Lemma moved_divided t : meet_moved (times s t) Xs Ys -> meet_moved t ps qs.
+  Proof.
+    intros (p & q & Hp & Hq & X & Y & Z). exists (times (/ s) p), (times (/ s) q).
+    split; [eapply hull_divided; eauto |]. split; [eapply hull_divided; eauto |].
+    cbn in *. rewrite X, Y, Z. repeat split; field; lra.
+  Qed.
+  Lemma moved_back t : meet_moved t Xs Ys -> meet_moved (times (/ s) t) ps qs.
+  Proof.
+    intros (p & q & Hp & Hq & X & Y & Z). exists (times (/ s) p), (times (/ s) q).
+    split; [eapply hull_divided; eauto |]. split; [eapply hull_divided; eauto |].
+    cbn in *. rewrite X, Y, Z. repeat split; ring.
+  Qed.
+  Lemma moved_equal t u vs us : x t == x u -> y t == y u -> z t == z u -> meet_moved t vs us -> meet_moved u vs us.
+  Proof.
+    intros X Y Z (p & q & Hp & Hq & E). exists p, q. split; [auto |]. split; [auto |]. now rewrite <- X, <- Y, <- Z.
+  Qed.
+
+  Lemma meet_similar : meet Xs Ys <-> meet ps qs.
+  Proof.
+    unfold meet. split; intros H.
+    - apply moved_back in H. apply (moved_equal _ _ _ _) with (4 := H); cbn; ring.
+    - apply moved_times in H. apply (moved_equal _ _ _ _) with (4 := H); cbn; ring.
+  Qed.
+
+  Lemma shorter_times eps t : shorter eps t -> shorter (s * eps) (times s t).
+  Proof. unfold shorter; cbn. intros H. repeat split; nra. Qed.
+
+  Lemma cross_similar : cross Xs Ys -> cross ps qs.
+  Proof.
+    intros (eps & E & H). exists (/ s * eps). assert (0 < / s) by now apply Qinv_lt_0_compat.
+    split; [nra |]. intros t T. apply moved_divided, H.
+    apply shorter_times in T. assert (s * (/ s * eps) == eps) as F by (field; lra).
+    unfold shorter in *. now rewrite F in T.
+  Qed.
+
+  Lemma touch_similar : touch Xs Ys -> touch ps qs.
+  Proof.
+    intros (M & H). split; [now apply meet_similar |]. intros eps E.
+    destruct (H (s * eps)) as (t & T & N); [nra |]. exists (times (/ s) t). split.
+    - assert (0 < / s) by now apply Qinv_lt_0_compat. set (i := / s) in *.
+      assert (i * s == 1) as F by (unfold i; field; lra). unfold shorter in *; cbn.
+      assert (forall a, - (s * eps) < a /\ a < s * eps -> - eps < i * a /\ i * a < eps) as G.
+      { intros a (G1 & G2). assert (i * (s * eps) == eps) by (rewrite Qmult_assoc, F; ring). split; nra. }
+      repeat split; apply G; tauto.
+    - intros K. apply N. apply moved_times in K. apply (moved_equal _ _ _ _) with (4 := K); cbn; field; lra.
+  Qed.
+End Similar.
+
+(** * Touching and crossing exclude each other *)
+
+Lemma cross_not_touch vs us : cross vs us -> touch vs us -> False.
+Proof. intros (eps & E & H) (_ & T). destruct (T eps E) as (t & S & N). auto. Qed.
+Lemma cross_meet vs us : cross vs us -> meet vs us.
+Proof. intros (eps & E & H). apply H. unfold shorter; cbn. repeat split; lra. Qed.
+
+(** * Cells *)
+
+Definition shape (f : part) : list point := map rational (corners f).
+
+(** The entry e of the faces f and g is true. *)
+Definition about (e : entry) (f g : part) : Prop :=
+  key_a e = number_of f /\ key_b e = number_of g /\ meet (shape f) (shape g) /\
+  (kind_of e = Crosses -> cross (shape f) (shape g)) /\ (kind_of e = Touches -> touch (shape f) (shape g)).
+
+(** The pair f, g is decided: apart, or among the entries. *)
+Definition decided (found : list entry) (f g : part) : Prop :=
+  apart (shape f) (shape g) \/ exists e, In e found /\ about e f g.
+
+Lemma cut_spec {T} (rest : list T) : forall n taken l m, cut n taken rest = (l, m) ->
+  forall a, In a taken \/ In a rest <-> In a l \/ In a m.
+Proof.
+  induction rest as [| b rest IH]; intros n taken l m; cbn; destruct (n <=? 0)%Z; intros E a.
+  - injection E as <- <-. cbn. tauto.
+  - injection E as <- <-. cbn. tauto.
+  - injection E as <- <-. cbn. tauto.
+  - rewrite <- (IH _ _ _ _ E a). cbn. tauto.
+Qed.
+
+Lemma halves_spec g at_ first second : halves g at_ = Some (first, second) ->
+  forall f, In f (parts g) <-> In f (parts first) \/ In f (parts second).
+Proof.
+  unfold halves. destruct (cut (at_ - from g) [] (parts g)) as (l, m) eqn:E.
+  destruct l as [| a l]; [discriminate |]. destruct m as [| b m]; [discriminate |].
+  intros H f. injection H as <- <-. pose proof (cut_spec _ _ _ _ _ E f) as C. cbn [parts].
+  cbn [rev_append]. rewrite rev_append_rev, in_app_iff, <- in_rev. cbn [In] in *. tauto.
+Qed.
+
+Lemma step_spec c ga gb more entries : step c ga gb = Some (more, entries) ->
+  (forall f g, In f (parts ga) -> In g (parts gb) ->
+    decided entries f g \/ exists ha hb, In (ha, hb) more /\ In f (parts ha) /\ In g (parts hb)) /\
+  (forall e, In e entries -> exists f g, In f (parts ga) /\ In g (parts gb) /\ about e f g) /\
+  (forall ha hb, In (ha, hb) more -> incl (parts ha) (parts ga) /\ incl (parts hb) (parts gb)).
+Proof.
+  destruct c as [[|] at_ | d | i j wa wb why]; cbn.
+  - destruct (halves ga at_) as [(first, second) |] eqn:E; [| discriminate]. intros H. injection H as <- <-.
+    pose proof (halves_spec _ _ _ _ E) as S. split; [| split].
+    + intros f g F G. right. apply S in F. destruct F; [exists first, gb | exists second, gb]; cbn; auto.
+    + intros e [].
+    + intros ha hb [K | [K | []]]; injection K as <- <-; (split; [intros f F; apply S; auto | apply incl_refl]).
+  - destruct (halves gb at_) as [(first, second) |] eqn:E; [| discriminate]. intros H. injection H as <- <-.
+    pose proof (halves_spec _ _ _ _ E) as S. split; [| split].
+    + intros f g F G. right. apply S in G. destruct G; [exists ga, first | exists ga, second]; cbn; auto.
+    + intros e [].
+    + intros ha hb [K | [K | []]]; injection K as <- <-; (split; [apply incl_refl | intros f F; apply S; auto]).
+  - destruct (all_below Z.ltb d _ _) eqn:E; [| discriminate]. intros H. injection H as <- <-.
+    split; [| split; [intros e [] | intros ha hb []]].
+    intros f g F G. left. left. apply (below_apart d _ _ E).
+    + intros p P. apply in_flat_map. eauto.
+    + intros p P. apply in_flat_map. eauto.
+  - destruct (parts ga) as [| f [|]]; [discriminate | | discriminate].
+    destruct (parts gb) as [| g [|]]; [discriminate | | discriminate].
+    destruct ((index f =? i)%Z && (index g =? j)%Z && _ && _) eqn:E; [| discriminate].
+    rewrite !andb_true_iff in E. destruct E as ((_ & S) & R).
+    intros H. injection H as <- <-. destruct (reason_sound _ _ _ _ _ R S) as (M & W).
+    assert (about (Entry (number_of f) (number_of g) (kind_of_reason why)) f g) as K.
+    { unfold about; cbn. split; [auto |]. split; [auto |]. split; [exact M |].
+      destruct why; cbn in *; split; intros D; try discriminate; exact W. }
+    split; [| split].
+    + intros f' g' [<- | []] [<- | []]. left. right. eexists. split; [left; reflexivity | exact K].
+    + intros e [<- | []]. exists f, g. cbn. auto.
+    + intros ha hb [].
+Qed.
+
+Lemma run_spec (fs gs : list part) cs : forall todo found result, run cs todo found = Done result ->
+  (forall ha hb, In (ha, hb) todo -> incl (parts ha) fs /\ incl (parts hb) gs) ->
+  (forall e, In e found -> exists f g, In f fs /\ In g gs /\ about e f g) ->
+  (forall e, In e result -> exists f g, In f fs /\ In g gs /\ about e f g) /\
+  incl found result /\
+  (forall ha hb f g, In (ha, hb) todo -> In f (parts ha) -> In g (parts hb) -> decided result f g).
+Proof.
+  induction cs as [| c cs IH]; intros [| (ga, gb) todo] found result; cbn; intros R T F; try discriminate.
+  - injection R as <-. split; auto. split; [apply incl_refl | intros ha hb f g []].
+  - destruct (step c ga gb) as [(more, entries) |] eqn:E; [| discriminate].
+    destruct (step_spec _ _ _ _ _ E) as (S1 & S2 & S3).
+    destruct (T ga gb (or_introl eq_refl)) as (Ta & Tb).
+    destruct (IH _ _ _ R) as (R1 & R2 & R3).
+    + intros ha hb I. apply in_app_or in I. destruct I as [I | I]; [| auto].
+      destruct (S3 _ _ I) as (Ia & Ib). split; eapply incl_tran; eauto.
+    + intros e I. apply in_app_or in I. destruct I as [I | I]; [| auto].
+      destruct (S2 _ I) as (f & g & If & Ig & A). exists f, g. auto.
+    + split; [auto |]. split; [intros e I; apply R2, in_or_app; auto |].
+      intros ha hb f g [K | I] If Ig.
+      * injection K as <- <-. destruct (S1 f g If Ig) as [[A | (e & I & A)] | (ka & kb & I & Kf & Kg)].
+        -- now left.
+        -- right. exists e. split; [apply R2, in_or_app |]; auto.
+        -- apply (R3 ka kb); auto. apply in_or_app. auto.
+      * apply (R3 ha hb); auto. apply in_or_app. auto.
+Qed.
+
+(** * Orders *)
+
+Lemma counts_length {T} (l : list (Z * T)) : forall i ps, counts i l ps = true -> length l = length ps.
+Proof.
+  induction l as [| (a, b) l IH]; intros i [| p ps] H; cbn in *; try discriminate; auto.
+  apply andb_true_iff in H. f_equal. apply (IH (i + 1)%Z). tauto.
+Qed.
+
+Lemma in_combine_exists {S T} (l : list S) : forall (m : list T) b, length l = length m -> In b m ->
+  exists a, In (a, b) (combine l m).
+Proof.
+  induction l as [| a l IH]; intros [| c m] b L I; cbn in *; try discriminate; try tauto.
+  destruct I as [<- | I]; [exists a; auto |]. destruct (IH m b) as (a' & I'); auto. exists a'. auto.
+Qed.
+
+Lemma ordered_spec order ps sorted : ordered order ps = Some sorted -> forall f, In f ps <-> In f sorted.
+Proof.
+  unfold ordered. destruct ps as [| p ps]; [discriminate |].
+  destruct (counts 0 _ _) eqn:C; [| discriminate]. intros H f. injection H as <-.
+  apply counts_length in C. set (l := map snd (PlaceSort.sort (numbered 0 order))) in *.
+  pose proof (PartSort.Permuted_sort (combine l (p :: ps))) as P.
+  split; intros I.
+  - destruct (in_combine_exists l (p :: ps) f) as (a & J); [unfold l; now rewrite map_length | auto |].
+    apply in_map_iff. exists (a, f). split; auto. apply (Permutation_in _ P J).
+  - apply in_map_iff in I. destruct I as ((a, g) & <- & I).
+    apply (Permutation_in _ (Permutation_sym P)) in I. apply in_combine_r in I. auto.
+Qed.
+
+(** * Pairs of faces of the files *)
+
+(** The pair g sums up the entries. *)
+Definition sums_up (found : list entry) (gs : list pair_found) : Prop :=
+  (forall e, In e found -> exists g, In g gs /\ pair_a g = key_a e /\ pair_b g = key_b e /\
+     (kind_of e = Crosses -> crosses g = true) /\ (kind_of e = Meets -> meets_only g = true)) /\
+  (forall g, In g gs -> exists e, In e found /\ pair_a g = key_a e /\ pair_b g = key_b e) /\
+  (forall g, In g gs -> crosses g = true ->
+     exists e, In e found /\ pair_a g = key_a e /\ pair_b g = key_b e /\ kind_of e = Crosses).
+
+Lemma add_entry_spec e found gs : sums_up found gs -> sums_up (e :: found) (add_entry e gs).
+Proof.
+  intros (A & B & C). unfold add_entry.
+  set (c := match kind_of e with Crosses => true | _ => false end).
+  set (m := match kind_of e with Meets => true | _ => false end).
+  assert (kind_of e = Crosses -> c = true) as Hc by (unfold c; now intros ->).
+  assert (kind_of e = Meets -> m = true) as Hm by (unfold m; now intros ->).
+  assert (c = true -> kind_of e = Crosses) as Hc' by (unfold c; destruct (kind_of e); congruence).
+  assert (sums_up (e :: found) (PairFound (key_a e) (key_b e) c m :: gs)) as New.
+  { split; [| split].
+    - intros d [<- | I]; [eexists; split; [left; reflexivity | auto] |].
+      destruct (A d I) as (g & J & K). exists g. cbn. auto.
+    - intros g [<- | I]; [exists e; cbn; auto |]. destruct (B g I) as (d & J & K). exists d. cbn. auto.
+    - intros g [<- | I] G; [exists e; cbn in *; auto |]. destruct (C g I G) as (d & J & K). exists d. cbn. auto. }
+  destruct gs as [| g rest]; [exact New |].
+  destruct ((key_a e =? pair_a g)%Z && (key_b e =? pair_b g)%Z) eqn:E; [| exact New].
+  apply andb_true_iff in E. rewrite !Z.eqb_eq in E. destruct E as (Ea & Eb). split; [| split].
+  - intros d [<- | I].
+    + eexists. split; [left; reflexivity |]. cbn. rewrite !orb_true_iff. intuition.
+    + destruct (A d I) as (h & [<- | J] & K).
+      * eexists. split; [left; reflexivity |]. cbn. rewrite !orb_true_iff. tauto.
+      * exists h. cbn. auto.
+  - intros h [<- | I]; [exists e; cbn; auto |]. destruct (B h (or_intror I)) as (d & J & K). exists d. cbn. auto.
+  - intros h [<- | I] G; cbn in *.
+    + apply orb_true_iff in G. destruct G as [G | G]; [exists e; auto |].
+      destruct (C g (or_introl eq_refl) G) as (d & J & K). exists d. auto.
+    + destruct (C h (or_intror I) G) as (d & J & K). exists d. auto.
+Qed.
+
+Lemma sums_up_incl found found' gs : (forall e, In e found <-> In e found') -> sums_up found gs -> sums_up found' gs.
+Proof.
+  intros H (A & B & C). split; [| split].
+  - intros e I. apply A, H, I.
+  - intros g I. destruct (B g I) as (e & J & K). exists e. split; [now apply H | auto].
+  - intros g I G. destruct (C g I G) as (e & J & K). exists e. split; [now apply H | auto].
+Qed.
+
+Lemma fold_entries l : forall found gs, sums_up found gs ->
+  sums_up (rev l ++ found) (fold_left (fun gs e => add_entry e gs) l gs).
+Proof.
+  induction l as [| e l IH]; cbn; intros found gs H; [auto |].
+  rewrite <- app_assoc. apply (IH (e :: found)). now apply add_entry_spec.
+Qed.
+
+Lemma pairs_of_spec found : sums_up found (pairs_of found).
+Proof.
+  unfold pairs_of. assert (sums_up [] []) as E by (split; [| split]; intros ? []).
+  apply (fold_entries (rev_append (EntrySort.sort found) [])) in E.
+  revert E. apply sums_up_incl. intros e. rewrite app_nil_r, <- in_rev, rev_append_rev, app_nil_r, <- in_rev.
+  pose proof (EntrySort.Permuted_sort found) as P. split; intros I.
+  - apply (Permutation_in _ (Permutation_sym P) I).
+  - apply (Permutation_in _ P I).
+Qed.
+
+Lemma ascend_head gs : forall g, ascend (g :: gs) = true -> forall h, In h gs ->
+  (pair_a g < pair_a h \/ pair_a g = pair_a h /\ pair_b g < pair_b h)%Z.
+Proof.
+  induction gs as [| k gs IH]; intros g H h I; [destruct I |].
+  change (((pair_a g <? pair_a k)%Z || ((pair_a g =? pair_a k)%Z && (pair_b g <? pair_b k)%Z))
+            && ascend (k :: gs) = true) in H.
+  rewrite andb_true_iff, orb_true_iff, andb_true_iff, !Z.ltb_lt, Z.eqb_eq in H. destruct H as (H & R).
+  destruct I as [<- | I]; [auto |]. pose proof (IH k R h I). lia.
+Qed.
+Lemma ascend_once gs : ascend gs = true -> forall g h, In g gs -> In h gs ->
+  pair_a g = pair_a h -> pair_b g = pair_b h -> g = h.
+Proof.
+  induction gs as [| k gs IH]; intros A g h G H Ea Eb; [destruct G |].
+  pose proof (ascend_head gs k A) as L.
+  assert (ascend gs = true) as R by (destruct gs; [auto | cbn in A |- *; apply andb_true_iff in A; tauto]).
+  destruct G as [<- | G], H as [<- | H]; auto.
+  - apply L in H. lia.
+  - apply L in G. lia.
+Qed.
+
+(** * From the entries to the claim *)
+
+Lemma all_fulfil_contact c gs : forall ks, all_fulfil c gs ks = true ->
+  forall k, In k ks -> exists g, In g gs /\ fulfils c g k = true.
+Proof.
+  induction gs as [| g gs IH]; intros [| k ks] H j I; cbn in *; try discriminate; try tauto.
+  apply andb_true_iff in H. destruct H as (F & H). destruct I as [<- | I]; [exists g; auto |].
+  destruct (IH _ H j I) as (h & J & K). exists h. auto.
+Qed.
+Lemma all_fulfil_pair c gs : forall ks, all_fulfil c gs ks = true ->
+  forall g, In g gs -> exists k, In k ks /\ fulfils c g k = true.
+Proof.
+  induction gs as [| g gs IH]; intros [| k ks] H j I; cbn in *; try discriminate; try tauto.
+  apply andb_true_iff in H. destruct H as (F & H). destruct I as [<- | I]; [exists k; auto |].
+  destruct (IH _ H j I) as (h & J & K). exists h. auto.
+Qed.
+
+Section Claim.
+  Variables (s : scene) (c : claim) (found : list entry).
+  Let related (rel : list point -> list point -> Prop) f g := rel (placed (pose_a s) f) (placed (pose_b s) g).
+  Definition true_entry e (f g : face) : Prop :=
+    key_a e = number_in_file f /\ key_b e = number_in_file g /\ related meet f g /\
+    (kind_of e = Crosses -> related cross f g) /\ (kind_of e = Touches -> related touch f g).
+  Hypothesis entries_true : forall e, In e found ->
+    exists f g, In f (mesh_a s) /\ In g (mesh_b s) /\ true_entry e f g.
+  Hypothesis all_decided : all c = true -> forall f g, In f (mesh_a s) -> In g (mesh_b s) ->
+    related apart f g \/ exists e, In e found /\ true_entry e f g.
+  Hypothesis follows : claim_follows c (pairs_of found) = true.
+  Hypothesis one : all c = false -> length (contacts c) = 1%nat.
+  Let gs := pairs_of found.
+
+  Lemma pair_meets g : In g gs -> faces_meet s (pair_a g) (pair_b g).
+  Proof.
+    intros I. destruct (proj1 (proj2 (pairs_of_spec found)) g I) as (e & J & -> & ->).
+    destruct (entries_true e J) as (f & h & F & H & -> & -> & M & _). exists f, h. auto.
+  Qed.
+  Lemma pair_crosses g : In g gs -> crosses g = true -> faces_cross s (pair_a g) (pair_b g).
+  Proof.
+    intros I C. destruct (proj2 (proj2 (pairs_of_spec found)) g I C) as (e & J & -> & -> & K).
+    destruct (entries_true e J) as (f & h & F & H & -> & -> & _ & X & _).
+    specialize (X K). exists f, h. auto.
+  Qed.
+
+  Lemma ascending : ascend gs = true.
+  Proof. unfold claim_follows in follows. rewrite !andb_true_iff in follows. tauto. Qed.
+
+  (** Faces that meet have a pair, and it tells whether they cross, if all is told. *)
+  Lemma met_found i j : all c = true -> faces_meet s i j -> exists g, In g gs /\ pair_a g = i /\ pair_b g = j.
+  Proof.
+    intros All (f & g & F & G & <- & <- & M). destruct (all_decided All f g F G) as [A | (e & I & T)]; [now elim A |].
+    destruct (proj1 (pairs_of_spec found) e I) as (h & J & Ka & Kb & _). destruct T as (Ta & Tb & _).
+    exists h. now rewrite Ka, Kb, Ta, Tb.
+  Qed.
+  Lemma crossing_found i j : all c = true -> faces_cross s i j -> exists g, In g gs /\ pair_a g = i /\ pair_b g = j /\
+    (crosses g = true \/ meets_only g = true).
+  Proof.
+    intros All (f & g & F & G & <- & <- & X). destruct (all_decided All f g F G) as [A | (e & I & T)].
+    - elim A. now apply cross_meet.
+    - destruct (proj1 (pairs_of_spec found) e I) as (h & J & Ka & Kb & Kc & Km).
+      destruct T as (Ta & Tb & _ & _ & Tt). exists h. rewrite Ka, Kb, Ta, Tb.
+      split; [auto |]. split; [auto |]. split; [auto |].
+      destruct (kind_of e); auto. elim (cross_not_touch _ _ X (Tt eq_refl)).
+  Qed.
+  Lemma told_not_crossing g : In g gs -> is_told c g = true -> crosses g = false ->
+    ~ faces_cross s (pair_a g) (pair_b g).
+  Proof.
+    unfold is_told. intros I T N X. rewrite N in T. cbn in T. apply andb_true_iff in T. destruct T as (All & T).
+    destruct (crossing_found _ _ All X) as (h & J & Ea & Eb & K).
+    assert (h = g) as -> by (apply (ascend_once gs ascending); auto).
+    destruct K as [K | K]; rewrite K in *; discriminate.
+  Qed.
+
+  Theorem claim_holds : holds c s.
+  Proof.
+    pose proof follows as H. unfold claim_follows in H. fold gs in H. rewrite !andb_true_iff in H.
+    destruct H as (((_ & Told) & Fulfil) & Meshes). split; [| split].
+    - intros k I. destruct (all_fulfil_contact _ _ _ Fulfil k I) as (g & J & F).
+      apply filter_In in J. destruct J as (J & Counted). unfold fulfils in F. rewrite !andb_true_iff, !Z.eqb_eq in F.
+      destruct F as ((Ea & Eb) & F). unfold contact_holds, is_contact. rewrite Ea, Eb. split.
+      + unfold counted in Counted. destruct (only_crossing c); cbn in Counted; [now apply pair_crosses | now apply pair_meets].
+      + destruct (told k) as [[| |] |]; auto; try discriminate.
+        * apply andb_true_iff in F. destruct F as (T & N). split; [now apply pair_meets |].
+          apply told_not_crossing; auto. now destruct (crosses g).
+        * now apply pair_crosses.
+    - assert (all c = true \/ all c = false) as [All | All] by (destruct (all c); auto); rewrite All; [| auto]. intros i j. unfold is_contact. intros C.
+      assert (exists g, In g (filter (counted c) gs) /\ pair_a g = i /\ pair_b g = j) as (g & I & <- & <-).
+      { unfold counted. destruct (only_crossing c) eqn:O; cbn in *.
+        - destruct (crossing_found i j All C) as (g & I & Ea & Eb & K). exists g. rewrite filter_In.
+          repeat split; auto. rewrite forallb_forall in Told. specialize (Told g I). unfold is_told in Told.
+          destruct (crosses g); auto. destruct K as [K | K]; [auto |]. rewrite K, andb_false_r in Told. discriminate.
+        - destruct (met_found i j All C) as (g & I & Ea & Eb). exists g. rewrite filter_In. auto. }
+      destruct (all_fulfil_pair _ _ _ Fulfil g I) as (k & J & F). exists k. split; auto.
+      unfold fulfils in F. rewrite !andb_true_iff, !Z.eqb_eq in F. tauto.
+    - destruct (relation_of_meshes c) as [[| |] |]; cbn in *; auto.
+      + apply andb_true_iff in Meshes. destruct Meshes as (All & E). intros i j M. destruct (met_found i j All M) as (g & I & _).
+        destruct gs; [destruct I | discriminate].
+      + rewrite !andb_true_iff in Meshes. destruct Meshes as ((All & E) & N).
+        rewrite forallb_forall in N. split.
+        * assert (exists g, In g gs) as (g & I) by (destruct gs as [| g]; [discriminate | exists g; left; auto]).
+          exists (pair_a g), (pair_b g). now apply pair_meets.
+        * intros i j X. destruct (crossing_found i j All X) as (g & I & <- & <- & _).
+          specialize (N g I). apply andb_true_iff in N. destruct N as (T & N).
+          apply (told_not_crossing g I T); auto. now destruct (crosses g).
+      + apply existsb_exists in Meshes. destruct Meshes as (g & I & X). exists (pair_a g), (pair_b g).
+        now apply pair_crosses.
+  Qed.
+End Claim.
+
+(** * The checker *)
+
+Lemma place_spec ev p m : forall i, Forall2 (fun f part => number_of part = number_in_file f /\
+    corners part = map (fun v => posed_z p (map3 (whole ev) v)) (vertices f)) m (place ev p i m).
+Proof. induction m as [| f m IH]; intros i; cbn; constructor; cbn; auto. Qed.
+
+Lemma forall2_left {S T} (R : S -> T -> Prop) l m : Forall2 R l m -> forall a, In a l -> exists b, In b m /\ R a b.
+Proof. induction 1 as [| a b l m H F IH]; cbn; [tauto |]. intros c [<- | I]; [eauto |]. destruct (IH c I) as (d & J & K). eauto. Qed.
+Lemma forall2_right {S T} (R : S -> T -> Prop) l m : Forall2 R l m -> forall b, In b m -> exists a, In a l /\ R a b.
+Proof. induction 1 as [| a b l m H F IH]; cbn; [tauto |]. intros c [<- | I]; [eauto |]. destruct (IH c I) as (d & J & K). eauto. Qed.
+
+Lemma posed_similar ev er m p : fits_mesh ev m = true -> fits_pose ev er p = true -> forall f, In f m ->
+  similar (factor ev er) (map rational (map (fun v => posed_z (whole_pose ev er p) (map3 (whole ev) v)) (vertices f)))
+          (placed p f).
+Proof.
+  unfold fits_mesh, fits_pose. intros M P f I. rewrite forallb_forall in M. specialize (M f I).
+  rewrite forallb_forall in M. rewrite map_map. unfold placed. apply similar_map. intros v J. specialize (M v J).
+  cbn -[fits items] in P. cbn [items forallb] in P. rewrite !andb_true_iff in P.
+  destruct P as ((X & X') & (Y & Y') & (Z & Z') & _).
+  cbn -[coordinate_z coordinate map3 whole]. cbn [map3 x y z whole_pose]. repeat split.
+  - apply coordinate_whole; auto. cbn. rewrite !andb_true_iff. tauto.
+  - apply coordinate_whole; auto. cbn. rewrite !andb_true_iff. tauto.
+  - apply coordinate_whole; auto. cbn. rewrite !andb_true_iff. tauto.
+Qed.
+
+Theorem accepted_holds s c : check s c = Accepted -> holds (claimed c) s.
+Proof.
+  unfold check. destruct (exponents s) as (ev, er). destruct (fits_scene ev er s) eqn:F; [cbn [negb] | discriminate].
+  destruct (forallb is_shape (mesh_a s) && forallb is_shape (mesh_b s)); [cbn [negb] | discriminate].
+  unfold fits_scene in F. rewrite !andb_true_iff in F. destruct F as (((Ma & Mb) & Pa) & Pb).
+  set (pa := place _ _ _ (mesh_a s)). set (pb := place _ _ _ (mesh_b s)).
+  pose proof (place_spec ev (whole_pose ev er (pose_a s)) (mesh_a s) 0) as A. fold pa in A.
+  pose proof (place_spec ev (whole_pose ev er (pose_b s)) (mesh_b s) 0) as B. fold pb in B.
+  pose proof (factor_positive ev er) as Positive.
+  (* What is proved of parts holds for faces. *)
+  assert (forall f g u v e, In f (mesh_a s) -> In g (mesh_b s) ->
+            number_of u = number_in_file f /\ corners u = map (fun v => posed_z (whole_pose ev er (pose_a s)) (map3 (whole ev) v)) (vertices f) ->
+            number_of v = number_in_file g /\ corners v = map (fun v => posed_z (whole_pose ev er (pose_b s)) (map3 (whole ev) v)) (vertices g) ->
+            (about e u v -> true_entry s e f g) /\
+            (apart (shape u) (shape v) -> apart (placed (pose_a s) f) (placed (pose_b s) g))) as Transfer.
+  { intros f g u v e If Ig (Nu & Cu) (Nv & Cv).
+    pose proof (posed_similar ev er _ _ Ma Pa f If) as Sf. pose proof (posed_similar ev er _ _ Mb Pb g Ig) as Sg.
+    rewrite <- Cu in Sf. rewrite <- Cv in Sg. fold (shape u) in Sf. fold (shape v) in Sg. split.
+    - intros (Ka & Kb & M & X & T). unfold true_entry. rewrite <- Nu, <- Nv. split; [auto |]. split; [auto |].
+      split; [| split].
+      + now apply (meet_similar _ _ _ _ _ Positive Sf Sg).
+      + intros K. apply (cross_similar _ _ _ _ _ Positive Sf Sg). auto.
+      + intros K. apply (touch_similar _ _ _ _ _ Positive Sf Sg). auto.
+    - intros N M. apply N. now apply (meet_similar _ _ _ _ _ Positive Sf Sg). }
+  assert (forall found fs gs, (forall f, In f fs -> In f pa) -> (forall g, In g gs -> In g pb) ->
+            (forall e, In e found -> exists f g, In f fs /\ In g gs /\ about e f g) ->
+            forall e, In e found -> exists f g, In f (mesh_a s) /\ In g (mesh_b s) /\ true_entry s e f g) as Entries.
+  { intros found fs gs Ifs Igs H e I. destruct (H e I) as (u & v & U & V & K).
+    destruct (forall2_right _ _ _ A u (Ifs u U)) as (f & If & Rf).
+    destruct (forall2_right _ _ _ B v (Igs v V)) as (g & Ig & Rg).
+    exists f, g. split; [auto |]. split; [auto |]. now apply (proj1 (Transfer f g u v e If Ig Rf Rg)). }
+  unfold check_parts. destruct (all (claimed c)) eqn:All.
+  - destruct (ordered (order_a c) pa) as [sa |] eqn:Oa; [| discriminate].
+    destruct (ordered (order_b c) pb) as [sb |] eqn:Ob; [| discriminate].
+    pose proof (ordered_spec _ _ _ Oa) as Sa. pose proof (ordered_spec _ _ _ Ob) as Sb.
+    destruct (run _ _ _) as [found | rest] eqn:R; [| discriminate]. cbn.
+    destruct (claim_follows _ _) eqn:Follows; [| discriminate]. intros _.
+    destruct (run_spec sa sb _ _ _ _ R) as (Sound & _ & Cover).
+    + intros ha hb [K | []]. injection K as <- <-. split; apply incl_refl.
+    + intros e [].
+    + apply (claim_holds s (claimed c) found); auto.
+      * apply (Entries found sa sb); auto; intros f If; [now apply Sa | now apply Sb].
+      * intros _ f g If Ig.
+        destruct (forall2_left _ _ _ A f If) as (u & U & Rf). destruct (forall2_left _ _ _ B g Ig) as (v & V & Rg).
+        destruct (Cover _ _ u v (or_introl eq_refl)) as [N | (e & I & K)]; [now apply Sa | now apply Sb | |].
+        -- left. apply (proj2 (Transfer f g u v (Entry 0 0 Meets) If Ig Rf Rg) N).
+        -- right. exists e. split; [auto |]. apply (proj1 (Transfer f g u v e If Ig Rf Rg) K).
+      * congruence.
+  - destruct (order_a c); [| discriminate]. destruct (order_b c); [| discriminate].
+    destruct (cells c) as [| [| | i j wa wb why] [|]] eqn:Cells; try discriminate.
+    destruct (contacts (claimed c)) as [| k [|]] eqn:Contacts; try discriminate.
+    destruct (find _ pa) as [u |] eqn:U; [| discriminate]. destruct (find _ pb) as [v |] eqn:V; [| discriminate].
+    apply find_some in U. apply find_some in V.
+    destruct (run _ _ _) as [found | rest] eqn:R; [| discriminate]. unfold conclude.
+    destruct (claim_follows _ _) eqn:Follows; [| discriminate]. intros _.
+    destruct (run_spec [u] [v] _ _ _ _ R) as (Sound & _ & _).
+    + intros ha hb [K | []]. injection K as <- <-. split; apply incl_refl.
+    + intros e [].
+    + apply (claim_holds s (claimed c) found); auto.
+      * apply (Entries found [u] [v]); auto; intros f [<- | []]; tauto.
+      * congruence.
+      * rewrite Contacts. auto.
+Qed.
