@@ -1,0 +1,107 @@
+(* SPDX-License-Identifier: Apache-2.0 *)
+(* The program cchip-checked: the command line of `cchip check` around the proved checker. *)
+open Reader
+
+let usage = "usage: cchip-checked A B FILE [--pose tx,ty,tz | --pose-matrix N,N,... | --poses CSV] [--single]\n\
+             \       cchip-checked --batch LIST\n\
+             Lines of LIST: A, B, FILE and the twelve numbers of --pose-matrix, with tabs between them; prints a verdict for each.\n\
+             Exit codes: 0 all accepted, 1 a certificate is refused, 2 a file or the command line cannot be read"
+
+let reason total (verdict : Checked.verdict) = match verdict with
+  | Accepted -> None
+  | ScaleFault -> Some "claim: the numbers have no common scale"
+  | ShapeFault -> Some "claim: a face is neither triangle nor quad"
+  | OrderFault -> Some "cell 0: an order does not hold each face once, or one contact is not one cell"
+  | ClaimFault -> Some "claim: it does not follow from the cells"
+  | CellsFault rest -> Some (Printf.sprintf "cell %d: it does not hold, or cells are missing" (total - List.length rest))
+
+(* Nothing, or why the certificate is refused. *)
+let check a b pose read =
+  if read.mesh_hashes <> (a.hash, b.hash) then Some "cell 0: the certificate is of other meshes"
+  else if read.poses_hash <> hash_poses identity pose then Some "cell 0: the certificate is of other poses"
+  else
+    let scene = { Checked.mesh_a = a.faces; pose_a = to_pose identity; mesh_b = b.faces; pose_b = to_pose pose } in
+    reason (List.length read.certificate.cells) (Checked.check scene read.certificate)
+
+let in_words read =
+  let c = read.certificate.claimed in
+  let relation : Checked.relation option -> string = function
+    | None -> "" | Some Apart -> ", apart" | Some Touching -> ", touching" | Some Crossing -> ", crossing" in
+  let contacts = match c.all, c.contacts with
+    | false, k :: _ -> Printf.sprintf "face %s of A meets face %s of B" (Z.to_string k.face_a) (Z.to_string k.face_b)
+    | _, [] -> "no contacts"
+    | _, l -> let n = List.length l in Printf.sprintf "%d contact%s and no others" n (if n = 1 then "" else "s") in
+  contacts ^ relation c.relation_of_meshes
+
+let run a b file poses ~numbered ~single =
+  let checked = ref 0 and refused = ref 0 in
+  let poses = poses () in
+  let a = read_mesh ~single a in
+  let b = read_mesh ~single b in
+  let wrong_number which =
+    unreadable "%s: it holds %s certificates than there are poses, %d" file which !checked in
+  let next lines =
+    try next_certificate lines with Json.Malformed what -> unreadable "%s: certificate %d: %s" file (!checked + 1) what in
+  let one lines pose = match next lines with
+    | None -> wrong_number "fewer"
+    | Some (read, rest) ->
+      incr checked;
+      if numbered then Printf.printf "certificate %d " !checked;
+      (match check a b pose read with
+       | None -> Printf.printf "accepted: %s\n" (in_words read)
+       | Some why -> incr refused; Printf.printf "refused: %s\n" why);
+      rest in
+  let rest = List.fold_left one (lines_of (read_file file)) poses in
+  if next rest <> None then wrong_number "more";
+  Printf.printf "certificates=%d accepted=%d refused=%d\n" !checked (!checked - !refused) !refused;
+  if !refused > 0 then 1 else 0
+
+let batch list =
+  let last = ref ("", None) and other = ref ("", None) in
+  let mesh cache path = match !cache with
+    | p, Some mesh when p = path -> mesh
+    | _ -> let mesh = read_mesh path in cache := (path, Some mesh); mesh in
+  let line text = match String.split_on_char '\t' text with
+    | [ a; b; file; pose ] ->
+      (try
+         let a = mesh last a in
+         let b = mesh other b in
+         let pose = pose_of_matrix pose in
+         let rec all n lines = match next_certificate lines with
+           | None -> if n = 0 then "malformed: no certificate" else "accepted"
+           | Some (read, rest) -> (match check a b pose read with None -> all (n + 1) rest | Some why -> "refused: " ^ why) in
+         all 0 (lines_of (read_file file))
+       with Unreadable what | Json.Malformed what -> "malformed: " ^ what)
+    | _ -> unreadable "%s: a line is not A, B, FILE and a pose with tabs between them" list in
+  List.iter (fun text -> print_endline (line text)) (lines_of (read_file list));
+  0
+
+let rec options values = function
+  | [] -> values
+  | "--single" :: rest -> options (("--single", "") :: values) rest
+  | word :: rest when String.length word > 2 && String.sub word 0 2 = "--" ->
+    (match String.index_opt word '=', rest with
+     | Some i, _ -> options ((String.sub word 0 i, String.sub word (i + 1) (String.length word - i - 1)) :: values) rest
+     | None, value :: rest -> options ((word, value) :: values) rest
+     | None, [] -> unreadable "%s: its value is missing\n%s" word usage)
+  | word :: rest -> options (("", word) :: values) rest
+
+let main arguments =
+  let values = List.rev (options [] arguments) in
+  let named name = List.filter_map (fun (n, v) -> if n = name then Some v else None) values in
+  List.iter (fun (n, _) -> if not (List.mem n [ ""; "--single"; "--pose"; "--pose-matrix"; "--poses"; "--batch" ])
+              then unreadable "%s: no such option\n%s" n usage) values;
+  let single = named "--single" <> [] in
+  match named "", named "--batch", named "--pose", named "--pose-matrix", named "--poses" with
+  | [], [ list ], [], [], [] when not single -> batch list
+  | [ a; b; file ], [], [], [], [] -> run a b file (fun () -> [ identity ]) ~numbered:false ~single
+  | [ a; b; file ], [], [ p ], [], [] -> run a b file (fun () -> [ pose_of_option p ]) ~numbered:false ~single
+  | [ a; b; file ], [], [], [ p ], [] -> run a b file (fun () -> [ pose_of_matrix p ]) ~numbered:false ~single
+  | [ a; b; file ], [], [], [], [ p ] -> run a b file (fun () -> poses_of_csv p) ~numbered:true ~single
+  | _ -> unreadable "%s" usage
+
+let () =
+  exit
+    (try main (List.tl (Array.to_list Sys.argv)) with
+     | Unreadable what -> flush stdout; prerr_endline ("cchip-checked: " ^ what); 2
+     | Stack_overflow -> flush stdout; prerr_endline "cchip-checked: the stack is too small for these files; run ulimit -s unlimited first"; 1)
