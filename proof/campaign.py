@@ -1,0 +1,218 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Compares the proved checker with check.py and `cchip check`: certificates of random small meshes and changed ones.
+
+    campaign.py CHECKED CCHIP N [EVERY]
+
+CHECKED: the program cchip-checked; CCHIP: the command cchip. N certificates are made, and each is changed once. Every EVERY-th
+case (100) also goes to `cchip check`, which is a process for each. CCHIP_SEED repeats a run."""
+import json
+import os
+import pathlib
+import random
+import struct
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "lib/python/src/collisionchip"))
+import check  # noqa: E402
+
+IDENTITY = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]
+COLUMNS = ["r00", "r01", "r02", "tx", "r10", "r11", "r12", "ty", "r20", "r21", "r22", "tz"]
+
+
+def random_mesh(rng):
+    """Vertices and faces: triangles, parallelograms, warped quads and degenerate ones, on a coarse grid or not."""
+    step = rng.choice([1.0, 0.5, 2.0**-20, 1e-3, 2.0**60])
+    grid = lambda n: step * rng.randint(-n, n) if rng.random() < 0.9 else step * rng.uniform(-n, n)
+    vertices, faces = [], []
+    for _ in range(rng.randint(1, 7)):
+        first = len(vertices)
+        p, u, v = ([grid(n) for _ in range(3)] for n in (3, 2, 2))
+        corners = [p, [a + b for a, b in zip(p, u)], [a + b + c for a, b, c in zip(p, u, v)], [a + c for a, c in zip(p, v)]]
+        if rng.random() < 0.2:
+            corners[rng.randrange(4)][rng.randrange(3)] += grid(1)
+        if rng.random() < 0.5:
+            corners.pop()
+        vertices += corners
+        faces.append(list(range(first, len(vertices))))
+    return vertices, faces, list(range(len(faces)))
+
+
+def random_pose(rng, scale):
+    kind = rng.random()
+    if kind < 0.6:
+        rows = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+    elif kind < 0.8:
+        rows = [[float(rng.randint(-1, 1)) for _ in range(3)] for _ in range(3)]
+    else:
+        rows = [[rng.uniform(-1, 1) for _ in range(3)] for _ in range(3)]
+    return [x for row in rows for x in row + [scale * (rng.randint(-4, 4) if rng.random() < 0.8 else rng.uniform(-4, 4))]]
+
+
+def write_off(path, mesh):
+    vertices, faces, _ = mesh
+    rows = [" ".join(repr(x) for x in v) for v in vertices] + [" ".join(map(str, [len(f), *f])) for f in faces]
+    path.write_text("\n".join([f"OFF\n{len(vertices)} {len(faces)} 0", *rows]) + "\n")
+
+
+def change_value(rng, value):
+    """Another value of JSON in the place of one."""
+    if isinstance(value, bool):
+        return rng.choice([not value, None, int(value)])
+    if isinstance(value, int):
+        return rng.choice([value + 1, value - 1, 0, -value, float(value), str(value), True, 2**32, 2**64, [value, value], [value, value + 1]])
+    if isinstance(value, str):
+        if value.lstrip("-").isdigit():
+            n = int(value)
+            return rng.choice([str(n + 1), str(n - 1), str(-n), str(2 * n), "0", "1", "-0", "0" + value, "+" + value, value + "0", " " + value, n])
+        words = ["apart", "touching", "crossing", "split_a", "split_b", "separated", "meet", "touch", "cross", "a1", "a2", "a3", "b1", "b2", "b3", "a0", ""]
+        return rng.choice([*words, value.upper(), None])
+    if isinstance(value, list):
+        value, kind = list(value), rng.randrange(6)
+        if kind == 0 or not value:
+            value.insert(rng.randint(0, len(value)), rng.choice([0, 1, "1", [0, 0], [0, 0, None], *value]))
+        elif kind == 1:
+            value.pop(rng.randrange(len(value)))
+        elif kind == 2:
+            rng.shuffle(value)
+        elif kind == 3:
+            value = [str(2 * int(x)) if isinstance(x, str) and x.lstrip("-").isdigit() else x for x in value]
+        else:
+            n = rng.randrange(len(value))
+            value[n] = change_value(rng, value[n])
+        return value
+    if value is None:
+        return rng.choice(["apart", "touching", "crossing", 0])
+    return rng.choice([None, {}, [value]])
+
+
+def change_lines(rng, lines):
+    """One change of a certificate: of a value, of a line or of a byte."""
+    lines, n, kind = list(lines), rng.randrange(len(lines)) if rng.random() < 0.6 else 0, rng.random()
+    if kind < 0.65:
+        value = json.loads(lines[n])
+        key = rng.choice(list(value))
+        if rng.random() < 0.05:
+            del value[key]
+        elif rng.random() < 0.05:
+            value["other"] = change_value(rng, value[key])
+        else:
+            value[key] = change_value(rng, value[key])
+        lines[n] = json.dumps(value)
+    elif kind < 0.75 and len(lines) > 1:
+        i, k = rng.randrange(1, len(lines)), rng.randrange(1, len(lines))
+        step = rng.randrange(3)
+        if step == 0:
+            lines[i], lines[k] = lines[k], lines[i]
+        elif step == 1:
+            lines.insert(i, lines[k])
+        else:
+            del lines[i]
+    else:
+        data = bytearray(lines[n].encode())
+        at = rng.randrange(len(data))
+        byte = rng.choice([rng.randrange(256), *b"0123456789-,[]{}\"\\ \t\r\n"])
+        step = rng.randrange(3)
+        data[at:at + (step != 0)] = b"" if step == 1 else bytes([byte])
+        return b"\n".join([*(x.encode() for x in lines[:n]), bytes(data), *(x.encode() for x in lines[n + 1:])]) + b"\n"
+    return ("\n".join(lines) + "\n").encode()
+
+
+def with_hashes(lines, meshes, poses):
+    """The certificate as one of other meshes or poses: the hashes fit, the proofs mostly do not."""
+    claim = json.loads(lines[0])
+    claim["mesh_a"], claim["mesh_b"] = (check.hash_mesh(*m) for m in meshes)
+    claim["poses"] = check.hash_words(struct.pack("<24d", *(x + 0.0 for x in poses)))
+    return [json.dumps(claim, separators=(",", ":")), *lines[1:]]
+
+
+def accepted_by_python(data, meshes, poses):
+    try:
+        certificates = check.split(data.decode())
+        for lines in certificates:
+            check.check(meshes, poses, lines)
+        return bool(certificates)
+    except (check.Refused, UnicodeDecodeError):
+        return False
+
+
+class Campaign:
+    def __init__(self, checked, cchip, every, folder):
+        self.checked, self.cchip, self.every, self.folder = checked, cchip, every, folder
+        self.cases, self.counts = [], {"certificates": 0, "changed": 0, "accepted": 0, "refused": 0, "cchip": 0, "differences": 0}
+
+    def add(self, names, meshes, pose, data, changed):
+        path = self.folder / f"{len(self.cases)}.jsonl"
+        path.write_bytes(data)
+        self.cases.append((names, pose, path, changed, accepted_by_python(data, meshes, IDENTITY + pose)))
+        self.counts["changed" if changed else "certificates"] += 1
+
+    def compare(self):
+        numbers = lambda pose: ",".join(map(repr, pose))
+        (self.folder / "list").write_text("".join("\t".join([*map(str, names), str(path), numbers(pose)]) + "\n" for names, pose, path, _, _ in self.cases))
+        run = subprocess.run([self.checked, "--batch", self.folder / "list"], stdout=subprocess.PIPE, text=True, check=True)
+        verdicts = run.stdout.splitlines()
+        assert len(verdicts) == len(self.cases), "a verdict for each case"
+        for n, ((names, pose, path, changed, python), verdict) in enumerate(zip(self.cases, verdicts)):
+            answers = {"cchip-checked": verdict == "accepted", "check.py": python}
+            if n % self.every == 0:
+                command = [self.cchip, "check", *names, path, "--pose-matrix=" + numbers(pose)]
+                code = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode
+                answers["cchip check"] = code == 0
+                self.counts["cchip"] += 1
+                expected = 0 if verdict == "accepted" else 1 if verdict.startswith("refused") else 2
+                if code != expected:
+                    print(f"exit code of cchip check {code}, of cchip-checked {expected}: {verdict}")
+                    answers["exit code"] = not answers["check.py"]
+            self.counts["accepted" if python else "refused"] += 1
+            if len(set(answers.values())) != 1 or (not changed and not python):
+                self.counts["differences"] += 1
+                print(f"{answers}, {verdict}, pose {pose}\n{names[0].read_text()}{names[1].read_text()}{path.read_bytes()!r}")
+        self.cases = []
+
+
+def main(checked, cchip, count, every="100"):
+    seed = int(os.environ.get("CCHIP_SEED", random.randrange(2**32)))
+    print(f"CCHIP_SEED={seed}", flush=True)
+    rng, count = random.Random(seed), int(count)
+    with tempfile.TemporaryDirectory(dir="/dev/shm" if os.path.isdir("/dev/shm") else None) as folder:
+        folder = pathlib.Path(folder)
+        campaign, pair = Campaign(checked, cchip, int(every), folder), 0
+        while campaign.counts["certificates"] < count:
+            pair += 1
+            names = [folder / f"{pair}a.off", folder / f"{pair}b.off"]
+            meshes = [random_mesh(rng), random_mesh(rng)]
+            for name, mesh in zip(names, meshes):
+                write_off(name, mesh)
+            scale = rng.choice([abs(x) or 1.0 for x in meshes[0][0][0]])
+            poses = [random_pose(rng, scale / 2) for _ in range(min(20, count - campaign.counts["certificates"]))]
+            (folder / "poses.csv").write_text("\n".join([",".join(COLUMNS), *(",".join(map(repr, p)) for p in poses)]) + "\n")
+            options = ["--contacts", rng.choice(["first", "all"]), *rng.choice([[], ["--relation"], ["--counts", "crossing"]])]
+            command = [cchip, "collide", *names, "--poses", folder / "poses.csv", *options, "--certificate", folder / "made"]
+            run = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+            if run.returncode != 0:
+                sys.exit(f"{command}: exit code {run.returncode}\n{run.stderr}")
+            if "were cut" in run.stderr:
+                continue  # faces with a dent are several parts, which check.py does not cut
+            certificates = check.split((folder / "made").read_text())
+            for pose, lines in zip(poses, certificates):
+                campaign.add(names, meshes, pose, ("\n".join(lines) + "\n").encode(), False)
+                if rng.random() < 0.15:
+                    pose = rng.choice(poses)
+                    data = ("\n".join(with_hashes(lines, meshes, IDENTITY + pose)) + "\n").encode()
+                else:
+                    data = change_lines(rng, lines)
+                campaign.add(names, meshes, pose, data, True)
+            if len(campaign.cases) >= 2000:
+                campaign.compare()
+        campaign.compare()
+        print(" ".join(f"{name}={number}" for name, number in campaign.counts.items()))
+        sys.exit(campaign.counts["differences"] != 0 or campaign.counts["accepted"] <= campaign.counts["certificates"])
+
+
+if __name__ == "__main__":
+    if len(sys.argv) not in (4, 5):
+        sys.exit("usage:" + __doc__)
+    main(*sys.argv[1:])
