@@ -20,7 +20,7 @@ QUAD_LEAVES ?= build/leaves/BLEND/Suzanne_248.blend.obj
 # more options of campaign-leaves, as --eta 2
 LEAF_ARGS ?=
 
-.PHONY: list release docs-layout peers robots sim-reconfig sim-traverse wave-of formal-all mutants test-gates test-debug test-asan test-arm64 cross-windows fuzz-tools fuzz campaign-build campaign campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-cluster campaign-chip campaign-chip-faults campaign-chip-swaps picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot coverage coverage-bins coverage-cpp bench-certificate bench-scene sdist test-sdist bench-python test-dask test-ply bench-chip fpga fpga-sweep fpga-quick asic asic-quick tidy deb
+.PHONY: list release docs-layout peers robots sim-reconfig sim-traverse wave-of formal-all mutants test-gates test-debug test-asan test-arm64 cross-windows fuzz-tools fuzz campaign-build campaign campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-cluster campaign-chip campaign-chip-faults campaign-chip-swaps proof proof-campaign picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot coverage coverage-bins coverage-cpp bench-certificate bench-scene sdist test-sdist bench-python test-dask test-ply bench-chip fpga fpga-sweep fpga-quick asic asic-quick tidy deb
 
 define RUN_GROUPS
 Try it
@@ -30,11 +30,11 @@ Use the library
 Read
   docs-layout/3_min
 Check a change
-  wave-of test-sdist test-dask test-ply test-debug test-asan test-arm64 cross-windows test-gates fuzz tidy
+  proof wave-of test-sdist test-dask test-ply test-debug test-asan test-arm64 cross-windows test-gates fuzz tidy
 Check for long
   formal-all/hours mutants/hours coverage/hours coverage-bins coverage-cpp
   campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-collide campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
-  campaign-geometry/hours campaign-swaps campaign-cluster campaign-chip/hours campaign-chip-faults campaign-chip-swaps
+  campaign-geometry/hours campaign-swaps campaign-cluster campaign-chip/hours campaign-chip-faults campaign-chip-swaps proof-campaign
 Measure
   bench-reconfig bench-collide/10_min bench-distance bench-robot bench-scene/3_min bench-certificate bench-python/1_min bench-chip/30_min fpga/hours fpga-quick fpga-sweep/hours asic asic-quick
 Tools
@@ -284,6 +284,15 @@ coverage-cpp: ## branches of the C++ library that its own tests reach, into docs
 	rm -rf $(COVERAGE)-cpp/coverage
 	LLVM_PROFILE_FILE=$(CURDIR)/$(COVERAGE)-cpp/coverage/%m.profraw ctest --test-dir $(COVERAGE)-cpp -L '^(lib|ref)$$' -R '^test_' -j $(JOBS) --timeout 3000
 	scripts/coverage.py $(COVERAGE)-cpp --cpp --write
+
+proof: ## the checker of certificates that is proved in Coq: its proof, its axioms and the program build/proof/cchip-checked (Debian's coq, libzarith-ocaml-dev, ocaml-findlib)
+	@command -v coqc > /dev/null && ocamlfind query zarith > /dev/null || { echo "install Debian's coq, libzarith-ocaml-dev and ocaml-findlib" >&2; exit 1; }
+	$(MAKE) --no-print-directory -C proof OUT='$(CURDIR)/build/proof'
+
+CERTIFICATES ?= 100000
+proof-campaign: proof $(RELEASE)/build.ninja ## CERTIFICATES certificates and as many changed ones: the proved checker, check.py and cchip check accept the same (CCHIP_SEED repeats a run)
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip
+	proof/campaign.py build/proof/cchip-checked $(RELEASE)/bin/cchip $(CERTIFICATES) 100
 
 bench-certificate: $(RELEASE)/build.ninja ## certificates of answers for pairs of large meshes: all checked, their sizes and times; BENCH_ARGS="--poses 200" for more
 	cmake --build $(RELEASE) -j $(JOBS) --target bench_certificate
