@@ -29,8 +29,6 @@ export JOBS
 
 .DEFAULT_GOAL := help
 .PHONY: help bootstrap venv docs build sim sim-chip sim-levels wave test test-lib test-long test-python lint format formal export wheel install clean
-# a folder of this name would hide the target of scripts/run.mk
-.PHONY: proof
 
 # Groups of make help: a heading, then its targets. A target may be followed by /minutes on two cores after the build, as far as a page
 # of docs/ has measured it. tests/docs/check_help.py fails at a target in no group.
@@ -161,6 +159,10 @@ build/%$(OTHER)/build.ninja: | bootstrap
 	cmake --preset $* -B build/$*$(OTHER) $(if $(OTHER),-D CCHIP_VERILATOR:FILEPATH='$(VERILATOR_PATH)')
 
 ifndef IN_RUN
+# The folder of this name hides it from .DEFAULT.
+.PHONY: proof
+proof:
+	@$(MAKE) --no-print-directory -f scripts/run.mk $@
 .DEFAULT:
 	@$(MAKE) --no-print-directory -f scripts/run.mk $@
 endif

@@ -357,6 +357,25 @@ Proof.
   destruct (IH _ H j I) as (h & J & K). exists h. auto.
 Qed.
 
+(** No pair of faces is there twice. *)
+Lemma ascend_nodup (p : pair_found -> bool) gs : ascend gs = true ->
+  NoDup (map (fun g => (pair_a g, pair_b g)) (filter p gs)).
+Proof.
+  induction gs as [| g gs IH]; intros A; cbn; [constructor |].
+  pose proof (ascend_head gs g A) as L.
+  assert (ascend gs = true) as R by (destruct gs; [auto | cbn in A |- *; apply andb_true_iff in A; tauto]).
+  destruct (p g); [| auto]. cbn. constructor; [| auto].
+  intros I. apply in_map_iff in I. destruct I as (h & E & I). apply filter_In in I. destruct I as (I & _).
+  injection E as Ea Eb. apply L in I. lia.
+Qed.
+Lemma all_fulfil_keys c gs : forall ks, all_fulfil c gs ks = true ->
+  map (fun k => (face_a k, face_b k)) ks = map (fun g => (pair_a g, pair_b g)) gs.
+Proof.
+  induction gs as [| g gs IH]; intros [| k ks] H; cbn in *; try discriminate; auto.
+  apply andb_true_iff in H. destruct H as (F & H). unfold fulfils in F. rewrite !andb_true_iff, !Z.eqb_eq in F.
+  destruct F as ((-> & ->) & _). now rewrite (IH _ H).
+Qed.
+
 Section Claim.
   Variables (s : scene) (c : claim) (found : list entry).
   Let related (rel : list point -> list point -> Prop) f g := rel (placed (pose_a s) f) (placed (pose_b s) g).
@@ -415,7 +434,7 @@ Section Claim.
   Theorem claim_holds : holds c s.
   Proof.
     pose proof follows as H. unfold claim_follows in H. fold gs in H. rewrite !andb_true_iff in H.
-    destruct H as (((_ & Told) & Fulfil) & Meshes). split; [| split].
+    destruct H as (((_ & Told) & Fulfil) & Meshes). split; [| split; [| split]].
     - intros k I. destruct (all_fulfil_contact _ _ _ Fulfil k I) as (g & J & F).
       apply filter_In in J. destruct J as (J & Counted). unfold fulfils in F. rewrite !andb_true_iff, !Z.eqb_eq in F.
       destruct F as ((Ea & Eb) & F). unfold contact_holds, is_contact. rewrite Ea, Eb. split.
@@ -424,6 +443,7 @@ Section Claim.
         * apply andb_true_iff in F. destruct F as (T & N). split; [now apply pair_meets |].
           apply told_not_crossing; auto. now destruct (crosses g).
         * now apply pair_crosses.
+    - rewrite (all_fulfil_keys _ _ _ Fulfil). apply ascend_nodup, ascending.
     - assert (all c = true \/ all c = false) as [All | All] by (destruct (all c); auto); rewrite All; [| auto]. intros i j. unfold is_contact. intros C.
       assert (exists g, In g (filter (counted c) gs) /\ pair_a g = i /\ pair_b g = j) as (g & I & <- & <-).
       { unfold counted. destruct (only_crossing c) eqn:O; cbn in *.

@@ -105,6 +105,7 @@ Definition relation_holds (s : scene) (r : relation) : Prop :=
 
 Definition holds (c : claim) (s : scene) : Prop :=
   (forall k, In k (contacts c) -> contact_holds c s k) /\
+  NoDup (map (fun k => (face_a k, face_b k)) (contacts c)) /\
   (if all c then forall i j, is_contact c s i j -> exists k, In k (contacts c) /\ face_a k = i /\ face_b k = j
    else length (contacts c) = 1%nat) /\
   match relation_of_meshes c with None => True | Some r => relation_holds s r end.
