@@ -166,8 +166,9 @@ let to_single c = corner (Array.map (fun v ->
     if Float.is_finite single then single else unreadable "a coordinate is beyond the range of single precision") c.doubles)
 
 let read_mesh ?(single = false) path =
+  let text = read_file path in
   try
-    let outlines = read_outlines path (read_file path) in
+    let outlines = read_outlines path text in
     let outlines = if single then List.map (fun (n, corners) -> (n, List.map to_single corners)) outlines else outlines in
     if outlines = [] then unreadable "the file has no faces";
     to_mesh outlines
