@@ -120,6 +120,30 @@ def change_lines(rng, lines):
     return ("\n".join(lines) + "\n").encode()
 
 
+def retell(rng, lines):
+    """Another kind of cell for one pair of faces, with a claim to match: apart, meeting, touching or crossing."""
+    claim, cells = json.loads(lines[0]), [json.loads(line) for line in lines[1:]]
+    points = [cell for cell in cells if "faces" in cell]
+    if not points:
+        return lines
+    cell = rng.choice(points)
+    kind = rng.choice(["separated", "meet", "touch", "cross"])
+    direction = cell.get("direction") or [str(rng.randint(-1, 1)) for _ in range(3)]
+    told = {"meet": None, "touch": "touching", "cross": "crossing"}
+    mine = [k for k in claim["contacts"] if k[:2] == cell["faces"]]
+    claim["contacts"] = [k for k in claim["contacts"] if k not in mine]
+    faces = cell["faces"]
+    if kind == "separated":
+        cell.clear()
+        cell.update({"cell": kind, "direction": direction})
+    else:
+        cell.update({"cell": kind, "direction": direction, "span": rng.sample(["a1", "a2", "b1", "b2"], 3)})
+        claim["contacts"] = sorted([*claim["contacts"], [*faces, told[kind]]], key=lambda k: k[:2])
+    if rng.random() < 0.8:
+        claim["relation"] = None
+    return [json.dumps(line, separators=(",", ":")) for line in [claim, *cells]]
+
+
 def with_hashes(lines, meshes, poses):
     """The certificate as one of other meshes or poses: the hashes fit, the proofs mostly do not."""
     claim = json.loads(lines[0])
@@ -199,7 +223,10 @@ def main(checked, cchip, count, every="100"):
             certificates = check.split((folder / "made").read_text())
             for pose, lines in zip(poses, certificates):
                 campaign.add(names, meshes, pose, ("\n".join(lines) + "\n").encode(), False)
-                if rng.random() < 0.15:
+                kind = rng.random()
+                if kind < 0.2:
+                    data = ("\n".join(retell(rng, lines)) + "\n").encode()
+                elif kind < 0.35:
                     pose = rng.choice(poses)
                     data = ("\n".join(with_hashes(lines, meshes, IDENTITY + pose)) + "\n").encode()
                 else:
