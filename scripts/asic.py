@@ -1,22 +1,25 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Area, clock and power of the primitive tests, of the chip and of its blocks in standard cells, by synthesis with open tools.
+"""Area, clock and power of the primitive tests, of the chip and of its blocks in standard cells, by synthesis with open
+tools.
 
 usage: asic.py [ROW]... [options]     without ROW all rows; `asic.py --list` names them
   --liberty PATH    cell library, .lib or .lib.gz, typical corner (default: OSU 0.18 um of Debian's qflow-tech-osu018)
   --campaign PATH   cchip_campaign, which counts the mean beats (default build/release/bin/cchip_campaign, built by
                     `make campaign-build`); without it there are no pairs per second and no energy of a pair
   --pairs N         pairs of each class for the mean beats (default 20000)
-  --write           rewrite the rows of this run in the tables of this library in docs/hardware/asic.md; other rows stay if they were
-                    measured on the same rtl/. docs/figures/asic.csv has the critical paths with their instances
+  --write           rewrite the rows of this run in the tables of this library in docs/hardware/asic.md; other rows stay
+                    if they were measured on the same rtl/. docs/figures/asic.csv has the critical paths with their
+                    instances
   --list            print the rows
 
-Tools: Debian's Yosys 0.23 with its ABC, OpenSTA. Synthesis only: ideal clock, no wires, no clock tree, no scan, no clock
-gating; paths from register to register. Memories are boxes: their bits are counted, apart from the logic, and their delay is
-assumed (docs/hardware/asic.md). Power is that of the cells at the clock of the row, with 0.1 and with 0.5 transitions a clock at every
-cell. Outputs are kept below build/asic by the hash of what they depend on: a second run repeats only what changed.
-build/asic/LIBRARY.json holds the figures of all rows run so far. The last lines are `ROW um2=X nand2=N ff=N bits=N ns=X
-fo4=X mhz=X [mw=X/X] [mpairs=X pj=X/X]`. The row chip prints a line for each of its blocks besides.
+Tools: Debian's Yosys 0.23 with its ABC, OpenSTA. Synthesis only: ideal clock, no wires, no clock tree, no scan, no
+clock gating; paths from register to register. Memories are boxes: their bits are counted, apart from the logic, and
+their delay is assumed (docs/hardware/asic.md). Power is that of the cells at the clock of the row, with 0.1 and with
+0.5 transitions a clock at every cell. Outputs are kept below build/asic by the hash of what they depend on: a second
+run repeats only what changed. build/asic/LIBRARY.json holds the figures of all rows run so far. The last lines are `ROW
+um2=X nand2=N ff=N bits=N ns=X fo4=X mhz=X [mw=X/X] [mpairs=X pj=X/X]`. The row chip prints a line for each of its
+blocks besides.
 Exit codes: 0 done, 1 a tool failed, 2 bad arguments."""
 import argparse
 import collections
@@ -63,8 +66,10 @@ class Row:
 
 
 def rows():
-    tests = [Row(name, f"cchip_primtest_{name}", name.replace("_", "-")) for name in ("tri_tri", "tri_quad", "quad_quad")]
-    blocks = ("bv_unit", "cache", "traversal", "get_data", "transform", "leaf_feed", "axi_read", "axi_write", "calc_result",
+    tests = [Row(name, f"cchip_primtest_{name}", name.replace("_", "-"))
+             for name in ("tri_tri", "tri_quad", "quad_quad")]
+    blocks = ("bv_unit", "cache", "traversal", "get_data", "transform", "leaf_feed", "axi_read", "axi_write",
+              "calc_result",
               "query_ring", "record_ring", "descriptor_queues", "dispatcher", "primtest", "chip_regs")
     leaf3 = {"files": "cchip_asic.f", "macros": ("-DCCHIP_MUL18_LATENCY=3",)}
     return {row.name: row for row in (
@@ -136,7 +141,8 @@ class Library:
         """Cell with this function and the least area, one whose name has the pattern if there is one."""
         # of cells alike, the plain one has the shortest name: inv_1, not clkinv_1
         fitting = [(not re.search(pattern, name), cell.area, len(name), name) for name, cell in self.cells.items()
-                   if len(cell.inputs) == inputs and cell.function and truth(cell.function, list(cell.inputs)) == values]
+                   if len(cell.inputs) == inputs and cell.function
+                   and truth(cell.function, list(cell.inputs)) == values]
         if not fitting:
             raise fpga.ToolError(f"library {self.name}: no cell with {inputs} inputs and function {values}")
         return min(fitting)[-1]
@@ -217,7 +223,8 @@ def generic(row):
     # brackets in names are patterns
     script = f"read_ilang {coarse.relative_to(ROOT)}/coarse.il\nhierarchy -top {row.top}\n" + "".join(
         f"cd {box['module']}\nchtype -set {box['kind']} c:{re.sub(r'[][]', '?', box['cell'])}\ncd\n" for box in boxes)
-    script += "".join(f"setparam -unset {name} t:mem_*\n" for name in sorted({p for box in boxes for p in box["parameters"]}))
+    script += "".join(f"setparam -unset {name} t:mem_*\n"
+                      for name in sorted({p for box in boxes for p in box["parameters"]}))
     script += ("opt -fast -full\nmemory_map\nopt -full\ntechmap\nopt -fast\nabc -fast\nopt -fast\n"
                # cchip_delay has initial values, which cells do not have
                "setattr -unset init\nopt_clean -purge\nwrite_ilang {}/generic.il\n")
@@ -241,7 +248,8 @@ def mapped(row, path):
               f"dfflibmap -liberty {file}\n"
               f"abc -liberty {file} -constr {{}}/constraints -D {10000 * fo4_ns:.0f} -script {{}}/abc.script\n"
               "setundef -zero\nopt_clean -purge\nwrite_verilog -noattr -noexpr -simple-lhs {}/raw.v\n")
-    files = {"run.ys": script, "abc.script": ABC, "constraints": f"set_driving_cell {lib.buffer}\nset_load {load:.3g}\n"}
+    files = {"run.ys": script, "abc.script": ABC,
+             "constraints": f"set_driving_cell {lib.buffer}\nset_load {load:.3g}\n"}
     folder = run(f"{row.name}.{lib.name}", "yosys", files, file, "raw.v")
     if not (folder / "netlist.v").exists():
         text, names = plain((folder / "raw.v").read_text())
@@ -280,10 +288,12 @@ def bits(expression, wide):
 
 
 def plain(text):
-    """(netlist as OpenSTA of 2019 reads it, new names of the modules): assignments bit by bit, names without parameters."""
+    """(netlist as OpenSTA of 2019 reads it, new names of the modules): assignments bit by bit, names without
+    parameters."""
     made = []
     for module in re.split(r"(?<=^endmodule\n)", text, flags=re.M):
-        declared = re.finditer(r"^\s*(?:input|output|wire|reg)\s+(?:signed\s+)?\[(\d+):(\d+)\]\s+(\S+?)\s*;", module, re.M)
+        declared = re.finditer(r"^\s*(?:input|output|wire|reg)\s+(?:signed\s+)?\[(\d+):(\d+)\]\s+(\S+?)\s*;",
+                               module, re.M)
         wide = {found[3]: (int(found[1]), int(found[2])) for found in declared}
 
         def single(found):
@@ -421,7 +431,8 @@ def power_of(report):
 def sta(name, folder, top, period, ask, boxes):
     here = folder.relative_to(ROOT)
     script = (f"read_liberty {here}/cells.lib\n" + (f"read_liberty {here}/boxes.lib\n" if boxes else "") +
-              f"read_verilog {here}/netlist.v\nlink_design {top}\ncreate_clock -name clk -period {period:g} [get_ports clk]\n"
+              f"read_verilog {here}/netlist.v\nlink_design {top}\ncreate_clock -name clk -period {period:g} [get_ports "
+              "clk]\n"
               f"{ask}")
     return run(name, "sta", {"run.tcl": script}, folder.name, "report")
 
@@ -434,7 +445,8 @@ def analyse(row, path, beats, top, name):
     sums = totals(inside, top, lib, boxes)
     period = 400 * fo4(path) / lib.ns
     label = f"{name}.{lib.name}"
-    report = sta(f"{label}.sta", folder, top, period, "report_checks -path_delay max -format full -digits 5 > {}/report\n", boxes)
+    report = sta(f"{label}.sta", folder, top, period,
+                 "report_checks -path_delay max -format full -digits 5 > {}/report\n", boxes)
     start, end, slack, cells = path_of((report / "report").read_text())
     ns = (period - slack) * lib.ns
     mhz = 1000 / ns
@@ -443,7 +455,8 @@ def analyse(row, path, beats, top, name):
             "small_bits": sums["small"], "sram_bits": sums["sram"], "ns": round(ns, 4), "fo4": round(ns / fo4(path), 1),
             "fo4_ps": round(1000 * fo4(path), 1), "mhz": round(mhz, 1), "start": start, "end": end, "cells": cells}
     if not row.blocks or top != row.top:  # OpenSTA of 2019 dies in a design of three levels
-        ask = "".join(f"set_power_activity -global -activity {a}\nreport_power -digits 6 > {{}}/power{a}\n" for a in ACTIVITIES)
+        ask = "".join(f"set_power_activity -global -activity {a}\nreport_power -digits 6 > {{}}/power{a}\n"
+                      for a in ACTIVITIES)
         report = sta(f"{label}.power", folder, top, period, ask + "report_checks > {}/report\n", boxes)
         made["mw"] = {}
         for a in ACTIVITIES:
@@ -478,7 +491,8 @@ def measure(row, options):
 def last_line(name, r):
     watts = "/".join(f"{mw:.4g}" for mw in r.get("mw", {}).values())
     energy = "/".join(f"{pj:.4g}" for pj in r.get("pj", {}).values())
-    return (f"{name} um2={r['um2']:.0f} nand2={r['nand2']} ff={r['ff']} bits={r['small_bits'] + r['sram_bits']} ns={r['ns']:.3f} "
+    return (f"{name} um2={r['um2']:.0f} nand2={r['nand2']} ff={r['ff']} bits={r['small_bits'] + r['sram_bits']} "
+            f"ns={r['ns']:.3f} "
             f"fo4={r['fo4']:.1f} mhz={r['mhz']:.1f}" + (f" mw={watts}" if watts else "") +
             (f" mpairs={r['mpairs']:.1f} pj={energy}" if energy else ""))
 
@@ -503,13 +517,15 @@ def critical(r):
 
 
 def tests_table(found):
-    body = [[*cells_of(name, r), f"{r['mpairs']:.1f}" if "mpairs" in r else "-", several(r.get("mw", {})), several(r.get("pj", {})),
+    body = [[*cells_of(name, r), f"{r['mpairs']:.1f}" if "mpairs" in r else "-", several(r.get("mw", {})),
+             several(r.get("pj", {})),
              critical(r)] for name, r in found.items() if not name.startswith("chip")]
     return datasheet.table([*HEAD, "10^6 pairs/s", f"mW at {WATTS}", f"pJ a pair at {WATTS}", "critical path"], body)
 
 
 def chip_table(found):
-    body = [[*cells_of(name, r), several(r.get("mw", {})), critical(r)] for name, r in found.items() if name.startswith("chip")]
+    body = [[*cells_of(name, r), several(r.get("mw", {})), critical(r)]
+            for name, r in found.items() if name.startswith("chip")]
     return datasheet.table([*HEAD, f"mW at {WATTS}", "critical path"], body)
 
 
@@ -541,9 +557,11 @@ def save(name, found):
 
 def tree():
     """What was measured, for the page."""
-    git = lambda *command: subprocess.run(["git", "-C", str(ROOT), *command], check=True, stdout=subprocess.PIPE, text=True).stdout.strip()
+    git = lambda *command: subprocess.run(["git", "-C", str(ROOT), *command], check=True, stdout=subprocess.PIPE,
+                                          text=True).stdout.strip()
     changed = " with changes" if git("status", "--porcelain", "rtl") else ""
-    return f"git tree `{git('rev-parse', 'HEAD:rtl')}` of `rtl/` (commit {git('log', '-1', '--format=%h', '--', 'rtl')}){changed}"
+    return (f"git tree `{git('rev-parse', 'HEAD:rtl')}` of `rtl/` (commit "
+            f"{git('log', '-1', '--format=%h', '--', 'rtl')}){changed}")
 
 
 def with_others(block, head, made):
@@ -561,7 +579,8 @@ def with_others(block, head, made):
 
 def write_csv(name, found):
     """All figures of all libraries with the critical paths by their instances; rows of this run replace older ones."""
-    columns = ["library", "row", "rtl", "leaves", "ff", "small_bits", "sram_bits", "um2", "nand2", "ns", "fo4", "fo4_ps", "mhz", "start", "end",
+    columns = ["library", "row", "rtl", "leaves", "ff", "small_bits", "sram_bits", "um2", "nand2", "ns", "fo4",
+               "fo4_ps", "mhz", "start", "end",
                "cells"]
     kept, rtl = {}, tree().split("`")[1]
     if CSV.exists():
@@ -573,7 +592,8 @@ def write_csv(name, found):
     with open(CSV, "w", newline="") as file:
         lines = csv.DictWriter(file, columns, extrasaction="ignore", lineterminator="\n")
         lines.writeheader()
-        lines.writerows(line for _, line in sorted(kept.items(), key=lambda one: (one[0][0], order.index(one[0][1].split(".")[0]))))
+        lines.writerows(line for _, line in sorted(kept.items(),
+                                                   key=lambda one: (one[0][0], order.index(one[0][1].split(".")[0]))))
 
 
 def write(name, found):

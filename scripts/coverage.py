@@ -3,7 +3,8 @@
 """What the tests reach: lines, branches and toggles of the RTL, branches and lines of the C++ library.
 
 usage: coverage.py [options] BUILD
-  BUILD           build folder with CCHIP_COVERAGE in which tests ran with CCHIP_COVERAGE_FOLDER=BUILD/coverage (scripts/run coverage)
+  BUILD           build folder with CCHIP_COVERAGE in which tests ran with CCHIP_COVERAGE_FOLDER=BUILD/coverage
+                  (scripts/run coverage)
   --missing       print every point that nothing reached
   --write         put the tables into docs/develop/coverage.md
   --cpp           the library: BUILD is one by clang (scripts/run coverage-cpp)
@@ -11,10 +12,13 @@ usage: coverage.py [options] BUILD
 
 Bins count the clocks on which situations of two blocks of the chip meet (sim/rtl_models/cchip_chip_bins.sv).
 
-RTL, by Verilator: a line is a block of statements, a branch one side of an if or a case, a toggle a signal of one bit (control) that changes after the first reset. Points of all instances and
-configurations of a module are one. C++, by clang and llvm-cov (Debian's package llvm): a branch is one side of a condition as it is written, of all instantiations together.
+RTL, by Verilator: a line is a block of statements, a branch one side of an if or a case, a toggle a signal of one bit
+(control) that changes after the first reset. Points of all instances and configurations of a module are one. C++, by
+clang and llvm-cov (Debian's package llvm): a branch is one side of a condition as it is written, of all instantiations
+together.
 
-The last line is `rtl_lines=R% rtl_toggles=T% bins=K/N`, with --bins only the last of these, with --cpp `cpp_branches=B%`. Exit codes: 0 done, 1 nothing was counted or llvm-cov failed, 2 bad arguments."""
+The last line is `rtl_lines=R% rtl_toggles=T% bins=K/N`, with --bins only the last of these, with --cpp
+`cpp_branches=B%`. Exit codes: 0 done, 1 nothing was counted or llvm-cov failed, 2 bad arguments."""
 import argparse
 import collections
 import pathlib
@@ -27,9 +31,11 @@ import datasheet
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "develop" / "coverage.md"
 # of cchip_chip_bins.sv, bit 0 first
-SITUATIONS = {"cache": ("hit", "miss", "waiter", "again", "locked", "invalidate"), "traversal": ("start", "pop", "spill", "end", "cancel"),
+SITUATIONS = {"cache": ("hit", "miss", "waiter", "again", "locked", "invalidate"),
+              "traversal": ("start", "pop", "spill", "end", "cancel"),
               "record ring": ("room", "full", "wrapped"),
-              "swap": ("idle", "header", "shutdown", "decouple", "reset", "transfer", "check", "roc", "recouple", "report")}
+              "swap": ("idle", "header", "shutdown", "decouple", "reset", "transfer", "check", "roc",
+                       "recouple", "report")}
 POINT = re.compile(r"C '(.*)' (\d+)$")
 # The one list of what is not asked for, with its reason: (file name, text of the source line or the signal).
 EXCLUDED = ROOT / "scripts" / "coverage_excluded.csv"
@@ -52,7 +58,8 @@ def rtl_points(folder):
             fields = dict(field.split("\2", 1) for field in found[1].split("\1") if field)
             name = pathlib.Path(fields["f"])
             if name.name == "cchip_chip_bins.sv" and fields["page"].startswith("v_user"):
-                bins[tuple(int(number) for number in re.findall(r"gen_(?:first|second)__BRA__(\d+)__KET__", fields["h"]))] += int(found[2])
+                bins[tuple(int(number) for number in re.findall(r"gen_(?:first|second)__BRA__(\d+)__KET__",
+                                                                fields["h"]))] += int(found[2])
             if ROOT / "rtl" not in name.parents:
                 continue
             kind = fields["page"].split("/")[0].removeprefix("v_")
@@ -76,7 +83,8 @@ def bin_table(bins):
     for groups, (count, reached) in rows.items():
         prefixes = groups.split(", ")
         lost = [text[4:] for text in missing if text[4:].startswith(prefixes[0]) and f", {prefixes[1]} " in text]
-        lines.append(f"| {groups} | {count} | {reached} | {'; '.join(text.replace(prefixes[0] + ' ', '', 1).replace(prefixes[1] + ' ', '', 1) for text in lost)} |")
+        lines.append(f"| {groups} | {count} | {reached} | "
+                     f"{'; '.join(text.replace(prefixes[0] + ' ', '', 1).replace(prefixes[1] + ' ', '', 1) for text in lost)} |")
     total = [sum(row[k] for row in rows.values()) for k in (0, 1)]
     lines.append(f"| all | {total[0]} | {total[1]} | |")
     return "\n".join(lines) + "\n", missing, total
@@ -95,7 +103,8 @@ def excluding(point, rules, texts):
         texts[name] = (ROOT / name).read_text().splitlines()
     source = texts[name][line - 1]
     return {number for number, (file, of, pattern, _) in enumerate(rules)
-            if re.fullmatch(file, name.split("/")[-1]) and kind == of and pattern.search(what if kind == "toggle" else source)}
+            if re.fullmatch(file, name.split("/")[-1]) and kind == of
+            and pattern.search(what if kind == "toggle" else source)}
 
 
 def rtl_table(points):
@@ -115,7 +124,8 @@ def rtl_table(points):
             rows[room][kind, "reached"] += count > 0
         if count == 0:
             missing.append(f"{name}:{point[1]}: {kind} {point[4]}: {texts[name][point[1] - 1].strip()}")
-    lines = ["| room of rtl/ | lines | reached | branches | reached | toggles | reached | left out |", "|---|---|---|---|---|---|---|---|"]
+    lines = ["| room of rtl/ | lines | reached | branches | reached | toggles | reached | left out |",
+             "|---|---|---|---|---|---|---|---|"]
     for room in [*sorted(set(rows) - {"all"}), "all"]:
         row = rows[room]
         cells = [f"{row[kind]} | {share(row[kind, 'reached'], row[kind])}" for kind in ("line", "branch", "toggle")]
@@ -132,20 +142,27 @@ def share(part, whole):
 def shown(build):
     """llvm-cov's text about the sources of the rooms, of all programs that were compiled with counters."""
     profile, folder = build / "coverage" / "cpp.profdata", build / "coverage"
-    programs = [path for path in sorted((build / "bin").iterdir()) if path.is_file() and b"__llvm_covmap" in path.read_bytes()]
+    programs = [path for path in sorted((build / "bin").iterdir()) if path.is_file()
+                and b"__llvm_covmap" in path.read_bytes()]
     if not programs or not any(folder.glob("*.profraw")):
         raise Failed(f"no counts of the library in {folder}; run scripts/run coverage-cpp")
     try:
-        subprocess.run(["llvm-profdata", "merge", "-sparse", "-o", profile, *sorted(folder.glob("*.profraw"))], check=True, stderr=subprocess.PIPE, text=True)
-        return subprocess.run(["llvm-cov", "show", "--show-branches=count", "--show-instantiations=false", f"--instr-profile={profile}", programs[0],
-                               *(f"--object={path}" for path in programs[1:]), *(ROOT / room for room in re.findall(r"^src:\*/(\S+)/\*$", CPP_ROOMS.read_text(), re.M))],
+        subprocess.run(["llvm-profdata", "merge", "-sparse", "-o", profile, *sorted(folder.glob("*.profraw"))],
+                       check=True, stderr=subprocess.PIPE, text=True)
+        return subprocess.run(["llvm-cov", "show", "--show-branches=count", "--show-instantiations=false",
+                               f"--instr-profile={profile}", programs[0],
+                               *(f"--object={path}" for path in programs[1:]),
+                               *(ROOT / room for room in re.findall(r"^src:\*/(\S+)/\*$",
+                                                                    CPP_ROOMS.read_text(), re.M))],
                               check=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True).stdout
     except (OSError, subprocess.CalledProcessError) as error:
-        raise Failed(f"llvm-cov (Debian's package llvm): {error} {getattr(error, 'stderr', '') or ''}".strip()) from error
+        raise Failed(
+            f"llvm-cov (Debian's package llvm): {error} {getattr(error, 'stderr', '') or ''}".strip()) from error
 
 
 def cpp_points(text):
-    """{(file, line): (whether reached, source)} and {(file, line, column): [whether true, whether false]}, of all instantiations together; conditions that the compiler knows are none."""
+    """{(file, line): (whether reached, source)} and {(file, line, column): [whether true, whether false]}, of all
+    instantiations together; conditions that the compiler knows are none."""
     lines, branches, name = {}, {}, ""
     for line in text.splitlines():
         if line.startswith(f"{ROOT}/") and line.endswith(":"):
@@ -178,7 +195,8 @@ def cpp_table(build):
     lines = ["| room of lib/src | lines | reached | branches | reached |", "|---|---|---|---|---|"]
     for room in [*sorted(set(rows) - {"all"}), "all"]:
         row = rows[room]
-        lines.append(f"| {room} | {row['lines']} | {share(row['lines reached'], row['lines'])} | {row['branches']} | {share(row['branches reached'], row['branches'])} |")
+        lines.append(f"| {room} | {row['lines']} | {share(row['lines reached'], row['lines'])} | {row['branches']} | "
+                     f"{share(row['branches reached'], row['branches'])} |")
     return "\n".join(lines) + "\n", missing, rows["all"]
 
 
@@ -202,7 +220,8 @@ def main():
             if not options.bins:
                 text, rtl_missing, r = rtl_table(points)
                 tables, missing = {"rtl": text, **tables}, rtl_missing + missing
-                shares = f"rtl_lines={share(r['line', 'reached'], r['line'])} rtl_toggles={share(r['toggle', 'reached'], r['toggle'])} {shares}"
+                shares = (f"rtl_lines={share(r['line', 'reached'], r['line'])} "
+                          f"rtl_toggles={share(r['toggle', 'reached'], r['toggle'])} {shares}")
     except Failed as what:
         print(f"coverage.py: {what}", file=sys.stderr)
         return 1

@@ -2,28 +2,30 @@
 # SPDX-License-Identifier: Apache-2.0
 """The datasheets: builds them from the RTL, and measures what they show.
 
-A datasheet has the page docs/modules/MODULE.md, if the module has one, or else the header comment of its file; the tables
-of parameters and ports, made of the declarations in the RTL and the comments there; an instance template, if designs of
-others instantiate the module; what docs/figures/modules.csv has measured. `make docs` writes one for every module into the
-site, scripts/export.py one into the folder of each top; git has none of them.
+A datasheet has the page docs/modules/MODULE.md, if the module has one, or else the header comment of its file; the
+tables of parameters and ports, made of the declarations in the RTL and the comments there; an instance template, if
+designs of others instantiate the module; what docs/figures/modules.csv has measured. `make docs` writes one for every
+module into the site, scripts/export.py one into the folder of each top; git has none of them.
 
-Comments in the head of a module, which --check asks for: the meaning of a parameter or port stands behind its declaration
-or in the lines above it; for a parameter, "; legal: " and the legal values may follow. A line `// ---- NAME` above that
-begins a group of ports; what follows a colon or semicolon explains it, and its further lines are indented.
+Comments in the head of a module, which --check asks for: the meaning of a parameter or port stands behind its
+declaration or in the lines above it; for a parameter, "; legal: " and the legal values may follow. A line `// ----
+NAME` above that begins a group of ports; what follows a colon or semicolon explains it, and its further lines are
+indented.
 
 usage: datasheet.py                        measure everything, rewrite the generated tables (many minutes)
        datasheet.py PAGE...                the same for some pages only: a module, architecture, verification
        datasheet.py --page MODULE          print a datasheet
        datasheet.py --write simulation     measure what --compare simulation does and rewrite it, so it takes minutes
-       datasheet.py --compare simulation   write nothing; measure what simulation tells, and exit 1 with the differences if
-                                           a table says otherwise (not: areas; of the primitive tests' tables only the
-                                           latency of a lone pair)
+       datasheet.py --compare simulation   write nothing; measure what simulation tells, and exit 1 with the differences
+                                           if a table says otherwise (not: areas; of the primitive tests' tables only
+                                           the latency of a lone pair)
        datasheet.py --compare all          the same for every generated table (many minutes)
-       datasheet.py --check                write nothing; exit 1 if a parameter or port has no meaning in the RTL, a page in
-                                           docs/modules/ no module, a module no row of figures or no link in docs/README.md,
-                                           or if a page names a file or links to a page that does not exist
-       datasheet.py --templates            write nothing; elaborate the instance templates, exit 1 with what Icarus Verilog
-                                           says about one (a name that the RTL does not have, another width)
+       datasheet.py --check                write nothing; exit 1 if a parameter or port has no meaning in the RTL, a
+                                           page in docs/modules/ no module, a module no row of figures or no link in
+                                           docs/README.md, or if a page names a file or links to a page that does not
+                                           exist
+       datasheet.py --templates            write nothing; elaborate the instance templates, exit 1 with what Icarus
+                                           Verilog says about one (a name that the RTL does not have, another width)
        datasheet.py --latency MODULE       clocks from an input to the output it changes (Icarus Verilog)
        datasheet.py --stream [NAME=VALUE...]   a primitive test: latency, clocks per pair, drain (Icarus Verilog);
                                            NAME: a parameter of scripts/datasheet_stream.v, as VERTS_B=4
@@ -32,8 +34,8 @@ usage: datasheet.py                        measure everything, rewrite the gener
        datasheet.py --bounds               two bounds on the error of a sign, mean over random triples of edges
 
 Tables are written into docs/figures/modules.csv, and on pages between the lines `<!-- generated: begin NAME -->` and
-`<!-- generated: end -->`. JOBS = tools at the same time (default: all processors). Tools: Debian's yosys 0.23 and iverilog 11;
-default parameters unless a table says otherwise."""
+`<!-- generated: end -->`. JOBS = tools at the same time (default: all processors). Tools: Debian's yosys 0.23 and
+iverilog 11; default parameters unless a table says otherwise."""
 import concurrent.futures
 import csv
 import difflib
@@ -67,10 +69,13 @@ STIMULI = {
     "cchip_reset_copy": ("", "rst = 1;", "rst_copy"),
     "cchip_skid_buffer": ("", "s_valid = 1;", "m_valid"),
     "cchip_fifo": ("", "s_valid = 1;", "m_valid"),
-    "cchip_ram": ("write = 1; tick; write_addr = 1; tick; write_data = 1; write = 0; tick;", "read_addr = 1;", "read_data"),
-    "cchip_block_ram": ("write = 1; write_addr = 1; write_data = 1; tick; write = 0; repeat (2) tick;", "read_addr = 1;",
+    "cchip_ram": ("write = 1; tick; write_addr = 1; tick; write_data = 1; write = 0; tick;", "read_addr = 1;",
+                  "read_data"),
+    "cchip_block_ram": ("write = 1; write_addr = 1; write_data = 1; tick; write = 0; repeat (2) tick;",
+                        "read_addr = 1;",
                         "read_data"),
-    "cchip_dual_ram": ("write = 1; addr_a = 1; write_data = 1; tick; write = 0; addr_a = 0; repeat (2) tick;", "addr_b = 1;",
+    "cchip_dual_ram": ("write = 1; addr_a = 1; write_data = 1; tick; write = 0; addr_a = 0; repeat (2) tick;",
+                       "addr_b = 1;",
                        "read_data_b"),
     "cchip_mul18": ("", "a = 1; b = 1;", "p"),
     "cchip_mul_wide": ("", "a = 1; b = 1;", "p"),
@@ -102,7 +107,8 @@ STIMULI = {
     "cchip_vertex_collector": ("", "s_vertex_valid = 1; s_vertex_data[1:0] = 3;", "m_pair_valid"),
     "cchip_descriptor_queues": ("", "s_valid = 1;", "some"),
     "cchip_operand_memory": (
-        "room = 1; s_pair_a = 1; s_pair_valid = 1; repeat (3) tick; s_pair_valid = 0; m_place = 1;", "m_place = 0;", "m_a"),
+        "room = 1; s_pair_a = 1; s_pair_valid = 1; repeat (3) tick; s_pair_valid = 0; m_place = 1;",
+        "m_place = 0;", "m_a"),
     "cchip_dispatch_sequencer": ("serves = 1; room = 1;", "some = 1;", "launch"),
     "cchip_slot_ledger": ("repeat (60) tick; grant = 1; tick; grant = 0;", "s_result_valid = 1;", "m_valid"),
     "cchip_dispatcher": ("slot_module = 1;", "some = 2;", "m_vertex_valid"),
@@ -111,7 +117,8 @@ STIMULI = {
     "cchip_subsystem_status": ("", "report_valid = 1;", "swap_events"),
     "cchip_swaps": ("", "command_valid = 1;", "swap_events"),
     "cchip_swap_scheduler": ("", "command_valid = 1;", "m_report_valid"),
-    "cchip_primtest_subsystem": ("m_result_ready = 1; s_pair_mode = 2; s_pair_kind = 1;", "s_pair_valid = 1;", "m_result_valid"),
+    "cchip_primtest_subsystem": ("m_result_ready = 1; s_pair_mode = 2; s_pair_kind = 1;", "s_pair_valid = 1;",
+                                 "m_result_valid"),
     "cchip_pr_region": ("", RESERVED_PAIR, "m_result_valid"),
     "cchip_swap_request": ("", "s_swap_data = 1 << `CCHIP_SLOT_ID_W; begins = 1;", "module_id"),
     "cchip_swap_signals": ("slot = 1;", "to_stop = 1;", "stop"),
@@ -131,7 +138,8 @@ STIMULI = {
         "write = 1; write_set = 1; tick; write_set = 0; write_data = {1024{1'b1}}; tick; write = 0; "
         "line4 = {1024{1'b1}} << dut.SET_W; set1 = 1; repeat (8) tick;", "set1 = 0;", "match4"),
     "cchip_cache_port": (
-        "running = 1; exhausted = 1; entry_write = 3; tick; entry_write = 0; repeat (12) tick;", "s_valid = 1;", "m_valid"),
+        "running = 1; exhausted = 1; entry_write = 3; tick; entry_write = 0; repeat (12) tick;",
+        "s_valid = 1;", "m_valid"),
     "cchip_cache_change": ("running = 1; tick;", "want = 1;", "allocate"),
     "cchip_cache_invalidate": ("repeat ((1 << dut.SET_W) + 4) tick;", "s_valid = 1;", "walk_valid"),
     "cchip_cache_fill": (
@@ -171,7 +179,8 @@ STIMULI = {
     "cchip_first_pair": ("", "pairs = 2;", "first"),
     "cchip_verdict_view": ("", "s_verdict = 1;", "m_some_wait"),
     "cchip_traversal_contexts": (
-        "repeat (80) tick; write8 = 1; state8 = {1024{1'b1}}; context8 = 1; tick; write8 = 0;", "s_context = 1;", "state5"),
+        "repeat (80) tick; write8 = 1; state8 = {1024{1'b1}}; context8 = 1; tick; write8 = 0;",
+        "s_context = 1;", "state5"),
     "cchip_query_check": ("repeat (3) tick;", "s_valid = 1;", "waits"),
     "cchip_traversal_fetch": ("repeat (40) tick;", "s_goes = 1;", "m_valid"),
     "cchip_get_data": ("", "s_valid = 1;", "m_line_valid"),
@@ -182,12 +191,15 @@ STIMULI = {
     "cchip_broad_phase": ("pairs_each = 1; repeat (1200) tick;", "s_query_valid = 1;", "m_read_valid"),
     "cchip_axi_rules": ("", "m_axi_bvalid = 1;", "memory_ok"),
     "cchip_broad_phase_axi": ("pairs_each = 1; repeat (1200) tick;", "s_query_valid = 1;", "m_axi_arvalid"),
-    "cchip_bitstream_header": ("clear = 1; tick; tick; clear = 0; s_valid = 1; repeat (3) tick; s_valid = 0;", "s_valid = 1;",
+    "cchip_bitstream_header": ("clear = 1; tick; tick; clear = 0; s_valid = 1; repeat (3) tick; s_valid = 0;",
+                               "s_valid = 1;",
                                "done"),
     "cchip_config_port": ("length = 4;", "run = 1; s_valid = 1;", "done"),
-    "cchip_swap_retry": ("", "report_valid = 1; report_data = {16'd0, `CCHIP_SWAP_BUS, 8'd1, 8'd0}; valid = 4'd15;", "resting"),
+    "cchip_swap_retry": ("", "report_valid = 1; report_data = {16'd0, `CCHIP_SWAP_BUS, 8'd1, 8'd0}; valid = 4'd15;",
+                         "resting"),
     "cchip_phase_clocks": ("phase = 1; read_phase = 1; repeat (2) tick;", "elapsed = 1;", "read_clocks"),
-    "cchip_bitstream_table": ("write = 1; write_word = 1; write_data = 1; write_bytes = 1; tick; write = 0;", "look = 1;", "size"),
+    "cchip_bitstream_table": ("write = 1; write_word = 1; write_data = 1; write_bytes = 1; tick; write = 0;",
+                              "look = 1;", "size"),
     "cchip_swap_sequencer": ("", "s_swap_valid = 1;", "phase"),
     "cchip_config_controller": ("", "s_swap_valid = 1;", "phase"),
     "cchip_subsystem_regs": ("", "s_axil_arvalid = 1;", "s_axil_rvalid"),
@@ -208,7 +220,8 @@ STATIC_SIDE = {"cchip_primtest_subsystem": "SLOTS 1"}
 
 # Modules that a design of its own instantiates: their ports are in groups, and they have an instance template.
 INSTANTIATED = ("cchip_primtest", "cchip_primtest_tri_tri", "cchip_primtest_tri_quad", "cchip_primtest_quad_quad",
-                "cchip_primtest_point_tri", "cchip_primtest_subsystem", "cchip_broad_phase", "cchip_chip", "cchip_cache",
+                "cchip_primtest_point_tri", "cchip_primtest_subsystem", "cchip_broad_phase", "cchip_chip",
+                "cchip_cache",
                 "cchip_axi_read", "cchip_axi_write", "cchip_fifo", "cchip_skid_buffer")
 
 LATENCY_LIMIT = 1000  # clocks; a longer wait means a stimulus without effect
@@ -300,8 +313,10 @@ def definitions():
         sources[f"{record['name']}_W"] = (record["args"], " + ".join(f["width"] for f in record["fields"]))
 
     def value(text, given):
-        names = constants | given | {n: (lambda *a, s=s: value(s[1], dict(zip(s[0], a)))) if s[0] else None for n, s in sources.items()}
-        return eval(re.sub(r"\b([A-Z]\w*)\b(?!\()", lambda m: str(value(sources[m[1]][1], {})) if m[1] in sources else m[1], text),
+        names = constants | given | {n: (lambda *a, s=s: value(s[1], dict(zip(s[0], a)))) if s[0] else None
+                                     for n, s in sources.items()}
+        return eval(re.sub(r"\b([A-Z]\w*)\b(?!\()",
+                           lambda m: str(value(sources[m[1]][1], {})) if m[1] in sources else m[1], text),
                     {"__builtins__": {}}, names)
 
     linear = {}
@@ -413,7 +428,8 @@ def yosys(script, options=""):
 def leaf_count(width, shape, absolute):
     """Instances of cchip_mul18 in cchip_sat_pipeline, which Icarus elaborates."""
     verts_a, verts_b = SHAPES[shape]
-    settings = {"COORD_W": width, "SUBSTAGES": 12, "ABSOLUTE_PROJECTION": absolute, "VERTS_A": verts_a, "VERTS_B": verts_b}
+    settings = {"COORD_W": width, "SUBSTAGES": 12, "ABSOLUTE_PROJECTION": absolute, "VERTS_A": verts_a,
+                "VERTS_B": verts_b}
     with tempfile.TemporaryDirectory() as folder:
         program = pathlib.Path(folder) / "pipeline.vvp"
         run("iverilog", "-g2005", "-Irtl/include", "-o", str(program), "-s", "cchip_sat_pipeline",
@@ -513,7 +529,8 @@ def shape_settings(shape):
 
 def lone_only(path, rows):
     """The table of a primitive test's page with the latencies of the lone pairs that were measured."""
-    lines = [line for line in path.read_text().splitlines() if re.match(r"\| .* \| (EXHAUSTIVE|DIRECTED|reserved) \|", line)]
+    lines = [line for line in path.read_text().splitlines()
+             if re.match(r"\| .* \| (EXHAUSTIVE|DIRECTED|reserved) \|", line)]
     shown = {tuple(cells[:2]): cells for cells in ([c.strip() for c in line.strip("|").split("|")] for line in lines)}
     for row in rows:
         shown.setdefault(tuple(row[:2]), row)[3] = row[3]
@@ -569,7 +586,8 @@ def write_figures(found):
     with FIGURES.open("w", newline="") as file:
         writer = csv.DictWriter(file, columns, restval="", lineterminator="\n")
         writer.writeheader()
-        writer.writerows({"module": module, **before.get(module, {}), **found.get(module, {})} for module in rtl_files())
+        writer.writerows({"module": module, **before.get(module, {}), **found.get(module, {})}
+                         for module in rtl_files())
     print(f"wrote {FIGURES.relative_to(ROOT)}", flush=True)
 
 
@@ -592,7 +610,8 @@ def throughput():
 
 
 # (COORD_W, SUBSTAGES, ABSOLUTE_PROJECTION, shape) of the table of configurations: settings of the bench
-CONFIGURATIONS = {(width, substages, absolute, shape): (*shape_settings(verts), f"COORD_W={width}", f"SUBSTAGES={substages}",
+CONFIGURATIONS = {(width, substages, absolute, shape): (*shape_settings(verts), f"COORD_W={width}",
+                                                        f"SUBSTAGES={substages}",
                                                         f"ABSOLUTE_PROJECTION={absolute}")
                   for width, substages, absolute in ((16, 10, 0), (16, 10, 1), (16, 6, 0), (8, 6, 0), (20, 12, 0))
                   for shape, verts in SHAPES.items()}
@@ -603,7 +622,8 @@ def configurations():
     rows = []
     for (width, substages, absolute, shape), settings in CONFIGURATIONS.items():
         exhaustive = pairs(stream("BRIEF=2", *settings))[0]
-        rows.append([shape, width, substages, "absolute" if absolute else "relative", leaf_count(width, shape, absolute),
+        rows.append([shape, width, substages, "absolute" if absolute else "relative",
+                     leaf_count(width, shape, absolute),
                      exhaustive[3], exhaustive[5], f"`--stream BRIEF=2 {' '.join(settings)}`"])
     return table(["`cchip_primtest_`", "`COORD_W`", "`SUBSTAGES`", "projection", "18x18 multipliers",
                   "latency, clocks", "clocks per pair", "`scripts/datasheet.py --leaves` and"], rows)
@@ -628,7 +648,8 @@ def replaced(path, name, block):
     text = path.read_text()
     pattern = re.compile(BLOCK.format(f" {name}" if name else ""), re.S)
     if not pattern.search(text):
-        fail(f"{path.relative_to(ROOT)}: no lines '{begin(name)}' and '<!-- generated: end -->'; add them where the table belongs")
+        fail(f"{path.relative_to(ROOT)}: no lines '{begin(name)}' and '<!-- generated: end -->'; add them where the "
+             "table belongs")
     return pattern.sub(lambda m: f"{m.group(1)}{block}{m.group(2)}", text)
 
 
@@ -676,19 +697,23 @@ def compare(what):
     jobs = [block for page in pages() for block in blocks(page, quick=quick)]
     stale = 0
     for (path, name, _), fresh in zip(jobs, in_parallel(lambda job: replaced(job[0], job[1], job[2]()), jobs)):
-        difference = list(difflib.unified_diff(path.read_text().splitlines(), fresh.splitlines(), "page", "measured", lineterm="", n=0))
+        difference = list(difflib.unified_diff(path.read_text().splitlines(), fresh.splitlines(), "page", "measured",
+                                               lineterm="", n=0))
         if difference:
             stale += 1
             print(f"{path.relative_to(ROOT)}: block '{begin(name)}' is stale: scripts/datasheet.py {path.stem}")
             print("\n".join(difference[2:12]), flush=True)
     count = 0
-    for module, found in zip(rtl_files(), in_parallel(lambda module: measured(module, synthesis=not quick), rtl_files())):
+    for module, found in zip(rtl_files(),
+                             in_parallel(lambda module: measured(module, synthesis=not quick), rtl_files())):
         shown = figures().get(module, {})
-        difference = [f"{key} {shown.get(key)}, measured {value}" for key, value in found.items() if shown.get(key) != value]
+        difference = [f"{key} {shown.get(key)}, measured {value}"
+                      for key, value in found.items() if shown.get(key) != value]
         count += len(found)
         if difference:
             stale += 1
-            print(f"{FIGURES.relative_to(ROOT)}: {module} is stale: scripts/datasheet.py {module}: {'; '.join(difference)}", flush=True)
+            print(f"{FIGURES.relative_to(ROOT)}: {module} is stale: scripts/datasheet.py {module}: "
+                  f"{'; '.join(difference)}", flush=True)
     print(f"{len(jobs)} generated blocks, {count} figures, {stale} stale")
     return 1 if stale or not jobs or not count else 0
 
@@ -709,10 +734,12 @@ def escaped(text, module):
             return f"[{name}]({name}.md)"
         return f"`{name}`" if name in own or "_" in name else name
 
-    for character, entity in (("&", "&amp;"), ("<", "&lt;"), ("|", "&#124;"), ("*", "&#42;"), ("[", "&#91;"), ("]", "&#93;"), ("~", "&#126;")):
+    for character, entity in (("&", "&amp;"), ("<", "&lt;"), ("|", "&#124;"), ("*", "&#42;"), ("[", "&#91;"),
+                              ("]", "&#93;"), ("~", "&#126;")):
         text = text.replace(character, f"\0{entity}\0")
     parts = text.split("\0")
-    return "".join(part if i % 2 else re.sub(r"\bdocs/[\w/-]+\.md(#[\w-]+)?|\b[A-Za-z]\w*\b", word, part.replace("`", ""))
+    return "".join(part if i % 2 else re.sub(r"\bdocs/[\w/-]+\.md(#[\w-]+)?|\b[A-Za-z]\w*\b", word,
+                                             part.replace("`", ""))
                    for i, part in enumerate(parts))
 
 
@@ -723,7 +750,8 @@ def parameter_table(module):
         rows.append([f"`{name}`", f"`{value.replace('`', '')}`", escaped(legal, module) or "-", escaped(text, module)])
     refused = sorted(set(re.findall(r"\bcchip_error_\w+", (ROOT / rtl_files()[module]).read_text())))
     text = table(["parameter", "default", "legal", "meaning"], rows) if rows else ""
-    return text + ("\nOther values stop elaboration at " + ", ".join(f"`{name}`" for name in refused) + ".\n" if refused else "")
+    return text + ("\nOther values stop elaboration at " + ", ".join(f"`{name}`" for name in refused) + ".\n"
+                   if refused else "")
 
 
 def port_table(module):
@@ -741,12 +769,15 @@ def measured_text(module):
     if row.get("latency"):
         _, change, output = STIMULI[module]
         inputs = list(dict.fromkeys(re.findall(r"\b(\w+)(?:\[[^\]]*\])? <?= ", change)))
-        text += (f"Latency: {row['latency']} clocks, from {' and '.join(f'`{name}`' for name in inputs)} to `{output}`; "
+        text += (f"Latency: {row['latency']} clocks, from {' and '.join(f'`{name}`' for name in inputs)} to "
+                 f"`{output}`; "
                  f"`scripts/datasheet.py --latency {module}`.\n")
     kinds = list(next(iter(TARGETS.values()))[1])
-    rows = [[target, *(row[f"{target}: {kind}"] for kind in kinds)] for target in targets(module) if row.get(f"{target}: LUT")]
+    rows = [[target, *(row[f"{target}: {kind}"] for kind in kinds)]
+            for target in targets(module) if row.get(f"{target}: LUT")]
     if rows:
-        what = f"static side, `{STATIC_SIDE[module]}`, regions black-boxed" if module in STATIC_SIDE else "default parameters"
+        what = (f"static side, `{STATIC_SIDE[module]}`, regions black-boxed" if module in STATIC_SIDE
+                else "default parameters")
         text += "\n" + table([f"Yosys 0.23, {what}"] + kinds, rows) + "\nCommands, in `rtl/`:\n\n"
         text += "".join(f"    {synthesis(TARGETS[target][0], module)}\n" for target in targets(module))
         text += "\nFmax: whole primitive tests are placed and routed, see [fpga.md](../hardware/fpga.md).\n"
@@ -774,7 +805,8 @@ def datasheet(module):
         text += header(module)
     made = {"Parameters": parameter_table(module), "Ports": port_table(module)}
     if module in INSTANTIATED:
-        made["Instance template"] = "Every parameter has its default value here and can be left out.\n\n" + template(module)
+        made["Instance template"] = "Every parameter has its default value here and can be left out.\n\n" + template(
+            module)
     made["Measured"] = measured_text(module)
     first, new = re.search(r"^## |\Z", text, re.M).start(), ""
     for heading, block in made.items():
@@ -813,7 +845,8 @@ def template(module):
             body.append(f"    // {re.split('[:;]', group)[0]}")
         pin = f"    .{name}({name})" + "," * (name != widths[-1][0])
         body.append(f"{pin:{2 * length + 8}}  // {direction}{'' if width == '1' else ', ' + width}")
-    return "\n".join(["```verilog", f"{module} #(", *text, f") u_{module.removeprefix('cchip_')} (", *body, ");", "```", ""])
+    return "\n".join(["```verilog", f"{module} #(", *text, f") u_{module.removeprefix('cchip_')} (", *body,
+                      ");", "```", ""])
 
 
 def harness(module):
@@ -829,12 +862,15 @@ def elaborate_templates():
     """Icarus Verilog reads every template; what it says about one is a finding."""
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / "templates.v"
-        path.write_text('`include "cchip_defs.vh"\n`default_nettype none\n' + "".join(harness(module) for module in INSTANTIATED))
+        path.write_text('`include "cchip_defs.vh"\n`default_nettype none\n'
+                        + "".join(harness(module) for module in INSTANTIATED))
         command = ["iverilog", "-g2005", "-Wall", "-Irtl/include", "-o", f"{folder}/templates.vvp",
-                   *(word for module in INSTANTIATED for word in ("-s", f"template_{module}")), *rtl_files().values(), str(path)]
+                   *(word for module in INSTANTIATED for word in ("-s", f"template_{module}")),
+                   *rtl_files().values(), str(path)]
         result = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     said = [line for line in result.stdout.splitlines() if "templates.v" in line or "error" in line]
-    print("\n".join([*said, f"{len(INSTANTIATED)} instance templates, {'wrong' if said or result.returncode else 'elaborated'}"]))
+    print("\n".join([*said, f"{len(INSTANTIATED)} instance templates, "
+                            f"{'wrong' if said or result.returncode else 'elaborated'}"]))
     return 1 if said or result.returncode else 0
 
 
@@ -865,7 +901,8 @@ def check():
     for path in sorted(MODULES.glob("*.md")):
         if path.stem not in rtl_files():
             found.append(f"{path.relative_to(ROOT)}: no such module in rtl/cchip.f")
-    found += [f"{FIGURES.relative_to(ROOT)}: {module}: no such module in rtl/cchip.f" for module in figures() if module not in rtl_files()]
+    found += [f"{FIGURES.relative_to(ROOT)}: {module}: no such module in rtl/cchip.f"
+              for module in figures() if module not in rtl_files()]
     folders = [ROOT / name / "README.md" for name in ("rtl", "sim", "lib", "cpp_ref", "bench", "tests")]
     for path in [README, ROOT / "CONTRIBUTING.md", *folders, *sorted((ROOT / "docs").rglob("*.md"))]:
         for name in re.findall(r"`((?:tests|bench)/[\w/]+\.cpp)`", path.read_text()):
@@ -875,7 +912,8 @@ def check():
             if not (path.parent / link).exists():
                 found.append(f"{path.relative_to(ROOT)}: link to {link}, which does not exist")
     count = sum(len(part) for module in rtl_files() for part in declared(module))
-    print("\n".join(found) if found else f"{len(rtl_files())} modules, {count} parameters and ports, each with its meaning")
+    print("\n".join(found) if found else f"{len(rtl_files())} modules, {count} parameters and ports, each with its "
+                                         "meaning")
     return 1 if found or not count else 0
 
 

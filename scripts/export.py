@@ -7,7 +7,8 @@ usage: export.py [--out FOLDER] [--programs FOLDER] [--pairs N] [--seed N] [--mh
   --programs FOLDER  of cchip_pair_vectors and cchip_query_vectors, default build/release/bin
   --pairs N          vectors of the bench of a primitive test, default 2000
   --seed N           of the vectors, default 1
-  --mhz F            clock of the constraint templates, default: what docs/hardware/fpga.md measured on ECP5, rounded down
+  --mhz F            clock of the constraint templates, default: what docs/hardware/fpga.md measured on ECP5, rounded
+                     down
   TOP                default: every primitive test of rtl/cchip.f, the array, the reconfigurable
                      subsystem, the blank module and the whole chip
 
@@ -44,14 +45,16 @@ CELLS = {"_ecp5": {"MULT18X18D": "multiplier block", "DP16KD": "block RAM"}}
 PAGES = ("develop/architecture.md", "hardware/definitions.md")
 MORE_PAGES = {SUBSYSTEM: ("hardware/registers.md",),
               CHIP: tuple(f"hardware/{name}.md" for name in ("chip", "chip-registers", "image", "programmers-guide"))}
-# Clock of the constraints: medians of docs/hardware/fpga.md, rounded down; the chip's is that of the triangle test with one seed.
+# Clock of the constraints: medians of docs/hardware/fpga.md, rounded down; the chip's is that of the triangle test with
+# one seed.
 MHZ = {"cchip_primtest_array": 145, SUBSYSTEM: 130, CHIP: 68}
 # Bench of a top, the first of its files, and what else is copied.
 BENCH = "tests/icarus/bench_primtest.v"
 WIRE = "cpp_ref/include/cchip/internal/wire"
 FILES = {BLANK: ("tests/icarus/bench_blank.v",),
          SUBSYSTEM: (BENCH, "tests/icarus/bench_subsystem.v", f"{WIRE}/registers.hpp"),
-         CHIP: ("tests/icarus/bench_chip.v", f"{WIRE}/chip_registers.hpp", "examples/chip_poll.h", "examples/chip_poll.c",
+         CHIP: ("tests/icarus/bench_chip.v", f"{WIRE}/chip_registers.hpp", "examples/chip_poll.h",
+                "examples/chip_poll.c",
                 "examples/chip_instance.v")}
 
 
@@ -73,8 +76,8 @@ def without_comments(text):
 
 
 def closure(top, files):
-    """Modules that `top` needs, itself included, in the order of the list. The chip's slots have three kinds of pairs: their
-    region names the test of points, which is never in it."""
+    """Modules that `top` needs, itself included, in the order of the list. The chip's slots have three kinds of pairs:
+    their region names the test of points, which is never in it."""
     needed, found = [top], set()
     files = {name: file for name, file in files.items() if top != "cchip_chip" or name != "cchip_primtest_point_tri"}
     while needed:
@@ -90,7 +93,8 @@ def version():
     """Version of the project, and the commit where git knows it."""
     number = re.search(r"project\(collisionchip VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text()).group(1)
     try:
-        commit = subprocess.run(["git", f"--git-dir={ROOT}/.git", f"--work-tree={ROOT}", "describe", "--always", "--dirty", "--tags"],
+        commit = subprocess.run(["git", f"--git-dir={ROOT}/.git", f"--work-tree={ROOT}", "describe", "--always",
+                                 "--dirty", "--tags"],
                                 stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout.strip()
     except OSError:
         commit = ""
@@ -133,11 +137,12 @@ def simulation_models(top):
     """Verilog of the models for simulation only that a top may instantiate, or nothing."""
     models = read_list(MODELS)
     names = [name for name in closure(top, read_list(RTL / "cchip.f") | models) if name in models]
-    return "".join(["// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1\n// Models for simulation only, to be read after "
-                    f"{top}.v, whose definitions they use. Written by scripts/export.py. Do not edit.\n"
-                    "/* verilator lint_off DECLFILENAME */ // many modules in one file\n",
-                    *(guarded(models[name]) for name in names),
-                    "/* verilator lint_on DECLFILENAME */\n"] if names else [])
+    return "".join(
+        ["// SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1\n// Models for simulation only, to be read after "
+         f"{top}.v, whose definitions they use. Written by scripts/export.py. Do not edit.\n"
+         "/* verilator lint_off DECLFILENAME */ // many modules in one file\n",
+         *(guarded(models[name]) for name in names),
+         "/* verilator lint_on DECLFILENAME */\n"] if names else [])
 
 
 def variants(top):
@@ -149,7 +154,8 @@ def variants(top):
         files = read_list(path)
         missing = [name for name in names if name not in files]
         if missing:
-            raise ExportError(f"rtl/{path.name}: {missing[0]} is missing, which {top} needs; add its line from rtl/cchip.f")
+            raise ExportError(f"rtl/{path.name}: {missing[0]} is missing, which {top} needs; add its line from "
+                              "rtl/cchip.f")
         if any(files[name] != read_list(RTL / "cchip.f")[name] for name in names):
             result.append((path.stem[len("cchip"):], one_file(top, files, path.name)))
     return result
@@ -198,8 +204,8 @@ create_clock -name clk -period {period} [get_ports clk]
 
 
 def page(path, text, exported):
-    """A page of docs/ with that text; links to what is not exported, and pictures, become text. `exported`: names of pages
-    below docs/. A link to the RTL of a module leads to its datasheet."""
+    """A page of docs/ with that text; links to what is not exported, and pictures, become text. `exported`: names of
+    pages below docs/. A link to the RTL of a module leads to its datasheet."""
     rtl = {ROOT / file: ROOT / "docs" / "modules" / f"{module}.md" for module, file in datasheet.rtl_files().items()}
 
     def keep(match):
@@ -234,8 +240,10 @@ def readme(top, files, pairs, mhz, described):
     def variant(suffix, text):
         cells = blocks(suffix, text)
         if not cells:
-            return f"- `{top}{suffix}.v` instead on {suffix[1:].upper()}: the leaves that rtl/cchip{suffix}.f names, without cells of a device.\n"
-        return (f"- `{top}{suffix}.v` instead on {suffix[1:].upper()}: with that device's {' and '.join(CELLS[suffix][name] for name in cells)}, "
+            return (f"- `{top}{suffix}.v` instead on {suffix[1:].upper()}: the leaves that rtl/cchip{suffix}.f names, "
+                    "without cells of a device.\n")
+        return (f"- `{top}{suffix}.v` instead on {suffix[1:].upper()}: with that device's "
+                f"{' and '.join(CELLS[suffix][name] for name in cells)}, "
                 "whose registers synthesis does not find otherwise. Simulate it with "
                 f"{' and '.join(f'`{name}.v`' for name in cells)}, our models.\n")
 
@@ -250,11 +258,14 @@ def readme(top, files, pairs, mhz, described):
         macro = f"-DCCHIP_BENCH_TOP={'bench_subsystem' if top == SUBSYSTEM else top} "
         wrapper = "bench_subsystem.v " if top == SUBSYSTEM else ""
     compiled = f"iverilog -g2005 {macro}-s {bench} -o bench.vvp {bench}.v {wrapper}{top}.v"
-    more = {SUBSYSTEM: """- [Registers](docs/hardware/registers.md), for C++ `registers.hpp`. `simulation_models.v` with parameter `SIMULATION` = 1: a slot holds all modules, bitstreams exchange them.
-""", CHIP: """- [Programmer's guide](docs/hardware/programmers-guide.md), [registers](docs/hardware/chip-registers.md), [images and records](docs/hardware/image.md); for C++ `chip_registers.hpp`, a driver in C `chip_poll.c`. `simulation_models.v` is for `SWAPS` = 1 with `SIMULATION` = 1.
+    more = {
+        SUBSYSTEM: """- [Registers](docs/hardware/registers.md), for C++ `registers.hpp`. `simulation_models.v` with parameter `SIMULATION` = 1: a slot holds all modules, bitstreams exchange them.
+""",
+        CHIP: """- [Programmer's guide](docs/hardware/programmers-guide.md), [registers](docs/hardware/chip-registers.md), [images and records](docs/hardware/image.md); for C++ `chip_registers.hpp`, a driver in C `chip_poll.c`. `simulation_models.v` is for `SWAPS` = 1 with `SIMULATION` = 1.
 """}.get(top, "")
     integration = chip_notes(mhz) if top == CHIP else ""
-    ip_xact = f"- `{top}.xml`: IP-XACT component, IEEE 1685-2014: buses, registers, ports, parameters.\n" if described else ""
+    ip_xact = (f"- `{top}.xml`: IP-XACT component, IEEE 1685-2014: buses, registers, ports, parameters.\n"
+               if described else "")
     return f"""<!-- SPDX-License-Identifier: Apache-2.0 -->
 # {top}, collisionchip {version()}
 
@@ -293,7 +304,8 @@ def chip_notes(mhz):
 
 def write_vectors(program, *arguments):
     try:
-        result = subprocess.run([program, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        result = subprocess.run([program, *map(str, arguments)], stdout=subprocess.PIPE,
+                                stderr=subprocess.STDOUT, text=True)
     except OSError:
         raise ExportError(f"{program} is missing: make export builds it")
     if result.returncode:

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Floorplan of cchip_chip on the Lattice LFE5U-85F, by stock means: a place for every block RAM and multiplier.
 
-nextpnr leaves a cell with an attribute BEL where it is and draws the logic to it; regions it takes from Python alone, which its
-build for WebAssembly does not have. The device has block RAMs in four rows and multipliers in three, 52 in each, in groups of
-four. What is chosen is which groups a block gets; inside a block the order is that of its data, so that the RAMs that hold the
-same bits of a line lie above each other.
+nextpnr leaves a cell with an attribute BEL where it is and draws the logic to it; regions it takes from Python alone,
+which its build for WebAssembly does not have. The device has block RAMs in four rows and multipliers in three, 52 in
+each, in groups of four. What is chosen is which groups a block gets; inside a block the order is that of its data, so
+that the RAMs that hold the same bits of a line lie above each other.
 
-    y = 82    get data: leaves   C  C  C  C  C  C  C  C  C      C cache: data, in row 46 the beats that arrive, in row 70 tags
+    y = 82    get data: leaves   C  C  C  C  C  C  C  C  C      C cache: data, in row 46 the beats that arrive, in row
+                                                                70 tags
     y = 70    get data: nodes    C  C  C  C  C  C  C  C  C
     y = 58    box test                 transform   slot      multipliers
     y = 46    box test           traversal   cache
@@ -14,9 +15,11 @@ same bits of a line lie above each other.
     y = 22    box test                 operands, queues
     y = 10    box test                 slot                  multipliers
 
-usage: floorplan.py heat FILE.svg TITLE=TABLE...     TABLE: congestion_by_coordinate of nextpnr's router2 (fpga.py --heat), side by side
+usage: floorplan.py heat FILE.svg TITLE=TABLE...     TABLE: congestion_by_coordinate of nextpnr's router2 (fpga.py
+                                                     --heat), side by side
 
-Memory and bus come to the cache at the upper edge; lines go left to get data and down to the box test, vertices to the right."""
+Memory and bus come to the cache at the upper edge; lines go left to get data and down to the box test, vertices to the
+right."""
 import csv
 import json
 import re
@@ -64,10 +67,11 @@ def sites(kind, y, group):
 
 
 def anchors(kinds):
-    """{cell: BEL} of the block RAMs and multipliers in {cell: type}. A block that needs more than the plan gives it gets the
-    nearest free places of its kind. ValueError: the device has too few."""
+    """{cell: BEL} of the block RAMs and multipliers in {cell: type}. A block that needs more than the plan gives it
+    gets the nearest free places of its kind. ValueError: the device has too few."""
     rows = {RAM: (22, 46, 70, 82), MULTIPLIER: (10, 34, 58)}
-    free = {kind: {bel: (x, y) for y in rows[kind] for group in range(GROUPS) for bel, x in sites(kind, y, group)} for kind in rows}
+    free = {kind: {bel: (x, y) for y in rows[kind] for group in range(GROUPS) for bel, x in sites(kind, y, group)}
+            for kind in rows}
     found, over = {}, []
     left = {cell: kind for cell, kind in kinds.items() if kind in rows}
     for pattern, kind, order, where in PLAN:
@@ -82,7 +86,8 @@ def anchors(kinds):
         del free[kinds[cell]][bel]
     for cell, kind, near in over:
         if not free[kind]:
-            raise ValueError(f"the LFE5U-85F has {len(at[kind])} {kind}, the design needs {sum(of == kind for of in kinds.values())}")
+            raise ValueError(f"the LFE5U-85F has {len(at[kind])} {kind}, the design needs "
+                             f"{sum(of == kind for of in kinds.values())}")
         x, y = at[kind][near]
         found[cell] = min(free[kind], key=lambda bel: abs(free[kind][bel][0] - x) + abs(free[kind][bel][1] - y))
         del free[kind][found[cell]]
@@ -90,7 +95,8 @@ def anchors(kinds):
 
 
 def anchored(netlist, settings):
-    """The text of Yosys' JSON with a place at every block RAM and multiplier, and with settings of nextpnr that have no option."""
+    """The text of Yosys' JSON with a place at every block RAM and multiplier, and with settings of nextpnr that have no
+    option."""
     design = json.loads(netlist)
     for module in design["modules"].values():
         module["settings"] = settings
@@ -107,8 +113,8 @@ TILE = 6  # px
 
 
 def picture(at, kinds, block_of, title):
-    """SVG of a placed design: each tile has the colour of the block with most cells there, the darker the fuller; frames are
-    block RAMs and multipliers. at: {cell: (x, y)}, kinds: {cell: type}, block_of: of a cell."""
+    """SVG of a placed design: each tile has the colour of the block with most cells there, the darker the fuller;
+    frames are block RAMs and multipliers. at: {cell: (x, y)}, kinds: {cell: type}, block_of: of a cell."""
     tiles, sizes = {}, {}
     for cell, place in at.items():
         block = block_of(cell)
@@ -118,32 +124,40 @@ def picture(at, kinds, block_of, title):
     large = sorted(sizes, key=lambda block: -sizes[block])[:len(COLOURS)]
     colour = dict(zip(large, COLOURS))
     height = TILE * HEIGHT
-    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {TILE * WIDTH + 190} {height + 30}" font-family="sans-serif" font-size="13">',
-             f"<!-- SPDX-License-Identifier: Apache-2.0 --><title>{title}</title>", f'<rect width="100%" height="100%" fill="#fff"/><text x="6" y="17">{title}</text>']
+    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {TILE * WIDTH + 190} {height + 30}" '
+             'font-family="sans-serif" font-size="13">',
+             f"<!-- SPDX-License-Identifier: Apache-2.0 --><title>{title}</title>",
+             f'<rect width="100%" height="100%" fill="#fff"/><text x="6" y="17">{title}</text>']
     squares = {}
     for (x, y), inside in sorted(tiles.items()):
         block = max(inside, key=inside.get)
         level = min(3, sum(inside.values()) // 6)  # up to 24 cells in a tile
-        squares.setdefault((colour.get(block, "#bbb"), level), []).append(f"M{TILE * x},{24 + height - TILE * (y + 1)}h{TILE}v{TILE}h-{TILE}z")
+        squares.setdefault((colour.get(block, "#bbb"), level),
+                           []).append(f"M{TILE * x},{24 + height - TILE * (y + 1)}h{TILE}v{TILE}h-{TILE}z")
     for (fill, level), paths in sorted(squares.items()):
         parts.append(f'<path fill="{fill}" fill-opacity="{0.35 + 0.2 * level:.2f}" d="{"".join(paths)}"/>')
     for cell, (x, y) in sorted(at.items()):
         if kinds[cell] in (RAM, MULTIPLIER):
             wide = 2 if kinds[cell] == RAM else 1
-            parts.append(f'<rect x="{TILE * x}" y="{24 + height - TILE * (y + 1)}" width="{TILE * wide}" height="{TILE}" '
+            parts.append(f'<rect x="{TILE * x}" y="{24 + height - TILE * (y + 1)}" width="{TILE * wide}" '
+                         f'height="{TILE}" '
                          f'fill="{colour.get(block_of(cell), "#bbb")}" stroke="#000" stroke-width="0.8"/>')
     for number, block in enumerate([*large, "others"]):
-        parts.append(f'<rect x="{TILE * WIDTH + 12}" y="{34 + 22 * number}" width="14" height="14" fill="{colour.get(block, "#bbb")}"/>'
+        parts.append(f'<rect x="{TILE * WIDTH + 12}" y="{34 + 22 * number}" width="14" height="14" '
+                     f'fill="{colour.get(block, "#bbb")}"/>'
                      f'<text x="{TILE * WIDTH + 32}" y="{46 + 22 * number}">{block}</text>')
     return "\n".join([*parts, "</svg>"]) + "\n"
 
 
 def heat(tables):
-    """SVG of where wires are overused, the tables of {title: rows}, a row for each column of tiles, side by side in one scale."""
+    """SVG of where wires are overused, the tables of {title: rows}, a row for each column of tiles, side by side in one
+    scale."""
     most = max((int(count) for rows in tables.values() for row in rows for count in row if count), default=1)
     side, height = 3 * WIDTH, 3 * HEIGHT
-    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {(side + 12) * len(tables)} {height + 48}" font-family="sans-serif" font-size="13">',
-             '<!-- SPDX-License-Identifier: Apache-2.0 --><title>Overused wires</title><rect width="100%" height="100%" fill="#fff"/>']
+    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {(side + 12) * len(tables)} {height + 48}" '
+             'font-family="sans-serif" font-size="13">',
+             '<!-- SPDX-License-Identifier: Apache-2.0 --><title>Overused wires</title><rect width="100%" '
+             'height="100%" fill="#fff"/>']
     for number, (title, rows) in enumerate(tables.items()):
         left, total, own, squares = number * (side + 12), 0, 0, {}
         for x, row in enumerate(rows):
@@ -153,9 +167,11 @@ def heat(tables):
                     own = max(own, int(count))
                     level = min(5, 1 + 5 * int(count) // (most + 1))
                     squares.setdefault(level, []).append(f"M{left + 3 * x},{24 + height - 3 * (y + 1)}h3v3h-3z")
-        parts += [f'<rect x="{left}" y="24" width="{side}" height="{height}" fill="#f4f4f4"/>', f'<text x="{left}" y="16">{title}</text>',
+        parts += [f'<rect x="{left}" y="24" width="{side}" height="{height}" fill="#f4f4f4"/>',
+                  f'<text x="{left}" y="16">{title}</text>',
                   f'<text x="{left}" y="{height + 42}">overused wires: {total}, at most {own} in a tile</text>']
-        parts += [f'<path fill="#b00" fill-opacity="{0.2 * level:.1f}" d="{"".join(paths)}"/>' for level, paths in sorted(squares.items())]
+        parts += [f'<path fill="#b00" fill-opacity="{0.2 * level:.1f}" d="{"".join(paths)}"/>'
+                  for level, paths in sorted(squares.items())]
     return "\n".join([*parts, "</svg>"]) + "\n"
 
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Area and clock of the primitive tests and of other blocks on FPGAs, with open tools: nothing here needs a board or a vendor's tool.
+"""Area and clock of the primitive tests and of other blocks on FPGAs, with open tools: nothing here needs a board or a
+vendor's tool.
 
 usage: fpga.py [ROW[:SEEDS]...] [options]     without ROW all rows; `fpga.py --list` names them
   --seeds N         place and route with the seeds 1..N (default 5); rows that only serve comparison, and array6, with 3
@@ -17,25 +18,29 @@ usage: fpga.py [ROW[:SEEDS]...] [options]     without ROW all rows; `fpga.py --l
   --families        count the blocks of Xilinx 7 and of Intel Cyclone V, too
   --write           rewrite the rows of this run in the generated tables of docs/hardware/fpga.md; other rows stay;
                     all rows: the families, too
-  --bill            only the bills by block of the rows that have one (chip_tri, chip): synthesis, without place and route
-  --estimate        only place, seed 1 (or as many as --seeds or the row says), and print what limits the clock before a wire is routed: the
-                    estimate, the ends behind --goal, the registers where slow paths start, where each block lies. Minutes, where routing the
-                    chip takes hours
-  --heat FOLDER     of rows that router2 routes: where wires are overused, by pass (tables of nextpnr: by place, by net, by kind of wire)
+  --bill            only the bills by block of the rows that have one (chip_tri, chip): synthesis, without place and
+                    route
+  --estimate        only place, seed 1 (or as many as --seeds or the row says), and print what limits the clock before a
+                    wire is routed: the estimate, the ends behind --goal, the registers where slow paths start, where
+                    each block lies. Minutes, where routing the chip takes hours
+  --heat FOLDER     of rows that router2 routes: where wires are overused, by pass (tables of nextpnr: by place, by net,
+                    by kind of wire)
   --picture FILE    with --estimate: draw where the blocks of the first row lie, as SVG
-  --no-floorplan    place the chip's rows without scripts/floorplan.py, which gives block RAMs and multipliers their places
+  --no-floorplan    place the chip's rows without scripts/floorplan.py, which gives block RAMs and multipliers their
+                    places
   --goal MHZ        clock that --estimate counts ends behind (default 100)
-  --check           nothing but this: exit 1 if a short table of docs/hardware/fpga.md is not made of the lines of its CSV file
-                    in docs/figures
+  --check           nothing but this: exit 1 if a short table of docs/hardware/fpga.md is not made of the lines of its
+                    CSV file in docs/figures
   --list            print the rows
 
 Device: Lattice LFE5U-85F, speed grade 6 (the slowest), CABGA756, synthesised by Debian's Yosys 0.23 within
-scripts/fpga_harness.v, blocks that are no primitive test within one like it that is made for their ports. Counts are those of the module alone, the harness is not in them. Outputs are kept below
-build/fpga by the hash of what they depend on: a second run repeats only what changed. build/fpga/fpga.json holds the
-figures of all rows run so far. The last lines are `ROW w=COORD_W lut=N ff=N dsp=N ram=N fmax_mhz=X seeds=K`: logic LUT4
-(without carry chains and distributed RAM), flip-flops, MULT18X18D, block RAM, median of the seeds. In subsystems every
-region is synthesised on its own, as for partial reconfiguration: nothing is optimised across its border. Their lines go on
-with `static_lut=N static_ff=N static_ram=N`, all that is not in a region.
+scripts/fpga_harness.v, blocks that are no primitive test within one like it that is made for their ports. Counts are
+those of the module alone, the harness is not in them. Outputs are kept below build/fpga by the hash of what they depend
+on: a second run repeats only what changed. build/fpga/fpga.json holds the figures of all rows run so far. The last
+lines are `ROW w=COORD_W lut=N ff=N dsp=N ram=N fmax_mhz=X seeds=K`: logic LUT4 (without carry chains and distributed
+RAM), flip-flops, MULT18X18D, block RAM, median of the seeds. In subsystems every region is synthesised on its own, as
+for partial reconfiguration: nothing is optimised across its border. Their lines go on with `static_lut=N static_ff=N
+static_ram=N`, all that is not in a region.
 Exit codes: 0 done, 1 a tool failed, 2 bad arguments."""
 import argparse
 import collections
@@ -109,12 +114,14 @@ class Row:
 
 
 # blocks of cchip_chip that its bill names; what is in none of them is the chip's own
-CHIP_BLOCKS = ("cchip_cache", "cchip_traversal", "cchip_get_data", "cchip_bv_unit", "cchip_leaf_feed", "cchip_transform",
+CHIP_BLOCKS = ("cchip_cache", "cchip_traversal", "cchip_get_data", "cchip_bv_unit", "cchip_leaf_feed",
+               "cchip_transform",
                "cchip_descriptor_queues", "cchip_dispatcher", "cchip_pr_slot", "cchip_calc_result", "cchip_query_ring",
                "cchip_record_ring", "cchip_axi_read", "cchip_axi_write", "cchip_chip_regs")
 
 
-# rows of single blocks: parameters that the chip sets otherwise than the block itself (cchip_chip_core, cchip_broad_phase, cchip_slots)
+# rows of single blocks: parameters that the chip sets otherwise than the block itself (cchip_chip_core,
+# cchip_broad_phase, cchip_slots)
 CHIP_PARAMETERS = {
     "cchip_axi_read": (("CLIENTS", 2), ("SLOTS", 32)),
     "cchip_axi_write": (("CLIENTS", 1),),
@@ -145,12 +152,16 @@ def rows():
     # each slot is a partition for the largest module
     table += [Row(f"subsystem{n}", "fpga_subsystem", (("SLOTS", n), ("RM_ID", 3)), shape="quad-quad", seeds=3,
                   placer="heap") for n in (1, 2, 3)]
-    # with the parameters of the chip, and without the wide multiplexers of the device as there: for them Yosys takes more LUTs
-    table += [Row(name.replace("cchip_", ""), name, parameters, shape="", seeds=3, placer="heap", block=True, synth=" -nowidelut")
+    # with the parameters of the chip, and without the wide multiplexers of the device as there: for them Yosys takes
+    # more LUTs
+    table += [Row(name.replace("cchip_", ""), name, parameters, shape="", seeds=3, placer="heap", block=True,
+                  synth=" -nowidelut")
               for name, parameters in CHIP_PARAMETERS.items()]
     # the whole chip: its bill by block, then flat; a third fewer multiplexers of LUTs without the device's wide ones
-    small = (("QUERIES", 8), ("PAIRS", 24), ("LEAVES", 8), ("LEAF_DEPTH", 40), ("LEAF_NUMBERS", 32), ("CACHE_KB", 64), ("MISSES", 16), ("PASSES", 2))
-    table += [Row(name, "cchip_chip", (("RM_ID", module), *more), shape="", seeds=3, block=True, synth=" -nowidelut", owners=CHIP_BLOCKS, floorplan=True,
+    small = (("QUERIES", 8), ("PAIRS", 24), ("LEAVES", 8), ("LEAF_DEPTH", 40), ("LEAF_NUMBERS", 32), ("CACHE_KB", 64),
+             ("MISSES", 16), ("PASSES", 2))
+    table += [Row(name, "cchip_chip", (("RM_ID", module), *more), shape="", seeds=3, block=True, synth=" -nowidelut",
+                  owners=CHIP_BLOCKS, floorplan=True,
                   router="router2")
               for name, module, more in (("chip_small", 1, small), ("chip_tri", 1, ()), ("chip", 3, ()))]
     return {row.name: row for row in table}
@@ -180,8 +191,8 @@ def step(name, command, files, depends, product, build=None):
     """Folder with the outputs of a tool run, made unless it is there already.
 
     command and the texts of files, which are written into the folder first: `{}` stands for the folder; depends: what
-    else the outputs depend on; product: the file that proves success; build: another folder than BUILD. Tools run in ROOT
-    and get names relative to it: the tools of YoWASP do not see every absolute path."""
+    else the outputs depend on; product: the file that proves success; build: another folder than BUILD. Tools run in
+    ROOT and get names relative to it: the tools of YoWASP do not see every absolute path."""
     build = build or BUILD
     key = hashlib.sha256(json.dumps([files, depends]).encode()).hexdigest()[:12]
     folder = build / f"{name}-{key}"
@@ -225,9 +236,11 @@ def sources(row):
 
 
 def needed(top, files, more=None):
-    """Text of the files of a file list that the module needs, by name, with the headers; more: files besides, by module."""
+    """Text of the files of a file list that the module needs, by name, with the headers; more: files besides, by
+    module."""
     listed = (ROOT / "rtl" / files).read_text().splitlines()
-    modules = {pathlib.Path(line).stem: f"rtl/{line.strip()}" for line in listed if line.strip().endswith(".v")} | (more or {})
+    modules = {pathlib.Path(line).stem: f"rtl/{line.strip()}"
+               for line in listed if line.strip().endswith(".v")} | (more or {})
     text, wanted = {}, [top]
     while wanted:
         name = modules[wanted.pop()]
@@ -246,7 +259,8 @@ def macro(value):
 def block_harness(row):
     """scripts/fpga_harness.v for a block with any ports: each input and each output is at a register of its own."""
     parameters, ports = datasheet.parse(row.top)
-    values = "".join(f"  localparam integer {name} = {macro(dict(row.parameters).get(name, value))};\n" for name, value in parameters)
+    values = "".join(f"  localparam integer {name} = {macro(dict(row.parameters).get(name, value))};\n"
+                     for name, value in parameters)
     widths, pins = {"input": "0", "output": "0"}, ["    .clk(clk)"]
     for name, direction, width in ports:
         if name != "clk":
@@ -368,7 +382,8 @@ def to_place(row, synthesis, options):
         return netlist
     made = synthesis / "anchored.json"
     part = synthesis / f"anchored.json.{threading.get_ident()}"  # seeds run at the same time: nobody reads half a file
-    # router2 finds a way round where the chip is dense only if a net may leave the box around its ends by more than three tiles
+    # router2 finds a way round where the chip is dense only if a net may leave the box around its ends by more than
+    # three tiles
     part.write_text(floorplan.anchored(netlist.read_text(), {f"router2/bbMargin/{axis}": "14" for axis in "xy"}))
     part.replace(made)
     return made
@@ -399,7 +414,8 @@ def bitstream(row, config, seed, options):
     command = [str(packer), "--compress", str(config.relative_to(ROOT)), "{}/chip.bit"]
     folder = step(f"{row.name}.bit{seed}", command, {}, [hashlib.sha256(config.read_bytes()).hexdigest()], "chip.bit")
     data = (folder / "chip.bit").read_bytes()
-    say(f"{row.name} seed {seed}: bitstream bytes={len(data)} crc32={zlib.crc32(data):08x} file={(folder / 'chip.bit').relative_to(ROOT)}")
+    say(f"{row.name} seed {seed}: bitstream bytes={len(data)} crc32={zlib.crc32(data):08x} "
+        f"file={(folder / 'chip.bit').relative_to(ROOT)}")
 
 
 def estimate(row, synthesis, seed, options):
@@ -407,7 +423,8 @@ def estimate(row, synthesis, seed, options):
     netlist = to_place(row, synthesis, options)
     choices = [*DEVICE, "--placer", options.placer or row.placer, "--freq", str(options.freq), "--seed", str(seed),
                "--timing-allow-fail", "--no-route"]
-    command = [str(options.nextpnr), *choices, "--json", str(netlist.relative_to(ROOT)), "--write", "{}/placed.json", "--sdf", "{}/placed.sdf"]
+    command = [str(options.nextpnr), *choices, "--json", str(netlist.relative_to(ROOT)), "--write", "{}/placed.json",
+               "--sdf", "{}/placed.sdf"]
     depends = [choices, hashlib.sha256(netlist.read_bytes()).hexdigest(), version(options.nextpnr, "--version")]
     folder = step(f"{row.name}.placed{seed}", command, {}, depends, "placed.sdf")
     return placed.Placed((folder / "placed.json").read_text(), (folder / "placed.sdf").read_text())
@@ -461,8 +478,8 @@ def in_words(path):
 
 
 def endpoints(report, count):
-    """The slowest registers and blocks by name in the RTL, [[name, ns until its data are there]]: the bits of one register
-    are one end. The clock needs the set-up time of the end besides."""
+    """The slowest registers and blocks by name in the RTL, [[name, ns until its data are there]]: the bits of one
+    register are one end. The clock needs the set-up time of the end besides."""
     slowest = collections.defaultdict(float)
     for net in report.get("detailed_net_timings", []):
         for end in net["endpoints"]:
@@ -499,7 +516,8 @@ def module_cells(modules):
 
 
 def owned_cells(modules, owners):
-    """Cells by the innermost module of `owners` that they are in, {module: cells}; others under "": statistics as in cells()."""
+    """Cells by the innermost module of `owners` that they are in, {module: cells}; others under "": statistics as in
+    cells()."""
     found = {name: collections.Counter() for name in ("", *owners)}
 
     def add(name, times, owner):
@@ -532,12 +550,16 @@ def estimate_tables(timing, goal):
     """What --estimate prints of a placed design."""
     limit = 1e3 / goal
     group = lambda cell: re.sub(r"\[\d+\]", "[*]", re.sub(r"^u_core\.(u_broad_phase\.)?", "", name_of(cell)))
-    rows = [[f"{path.ns:.2f}", f"{1e3 / path.ns:.1f}", behind, timing.look_up_tables(path), f"{100 * path.wire_ns / path.ns:.0f} %",
-             max(timing.fan_out[hop.cell, hop.output] for hop in path.hops), f"`{group(path.source)}` -> `{group(path.end)}`.{path.pin}"]
+    rows = [[f"{path.ns:.2f}", f"{1e3 / path.ns:.1f}", behind, timing.look_up_tables(path),
+             f"{100 * path.wire_ns / path.ns:.0f} %",
+             max(timing.fan_out[hop.cell, hop.output] for hop in path.hops),
+             f"`{group(path.source)}` -> `{group(path.end)}`.{path.pin}"]
             for path, behind in placed.ranking(timing, group, limit)[:40]]
-    sources = datasheet.table(["ns", "MHz with all above repaired", f"ends behind {goal:g} MHz", "LUTs", "wires", "fan-out", "path"], rows)
+    sources = datasheet.table(["ns", "MHz with all above repaired", f"ends behind {goal:g} MHz", "LUTs", "wires",
+                               "fan-out", "path"], rows)
     lies = [[f"`{block}`", count, *(" / ".join(map(str, side)) for side in sides)]
-            for block, (count, sides) in sorted(placed.spread(timing, block_in).items(), key=lambda item: -item[1][0]) if count >= 150]
+            for block, (count, sides) in sorted(placed.spread(timing, block_in).items(), key=lambda item: -item[1][0])
+            if count >= 150]
     blocks = datasheet.table(["block", "cells", "x: 5 / 50 / 95 %", "y: 5 / 50 / 95 %"], lies)
     return f"Registers where the slowest paths start:\n\n{sources}\nWhere blocks lie:\n\n{blocks}"
 
@@ -584,7 +606,8 @@ def last_line(row):
     width = "" if row["block"] else f" w={row['coord_w']}"
     return (f"{row['label']}{width} lut={row['lut4']} ff={row['ff']} dsp={row['dsp']} ram={row['bram']} "
             f"fmax_mhz={row['fmax_median']:.1f} seeds={len(row['fmax_mhz'])}" +
-            (f" static_lut={static['LUT4, logic']} static_ff={static['FF']} static_ram={static['block RAM']}" if static else ""))
+            (f" static_lut={static['LUT4, logic']} static_ff={static['FF']} static_ram={static['block RAM']}"
+             if static else ""))
 
 
 # ---- tables
@@ -636,7 +659,8 @@ def classes_table(found):
             columns = [(f"{means[programme]:.3f}", millions(row, name, programme))
                        for programme in ("exhaustive", "directed")]
             body.append([f"`{row['label']}`", name, *columns[0], *columns[1]])
-    return datasheet.table(["row", "class", "mean beats, EXHAUSTIVE", "10^6 pairs/s, EXHAUSTIVE", "mean beats, DIRECTED",
+    return datasheet.table(["row", "class", "mean beats, EXHAUSTIVE", "10^6 pairs/s, EXHAUSTIVE",
+                            "mean beats, DIRECTED",
                             "10^6 pairs/s, DIRECTED"], body)
 
 
@@ -676,9 +700,11 @@ def subsystems_table(found):
 
 
 def blocks_table(found):
-    body = [[f"`{name}`", r["lut4"], r["carry"], r["lut4"] + 2 * r["carry"], r["ff"], r["dsp"], r["bram"], r["dram"], clocks_of(r),
+    body = [[f"`{name}`", r["lut4"], r["carry"], r["lut4"] + 2 * r["carry"], r["ff"], r["dsp"], r["bram"], r["dram"],
+             clocks_of(r),
              r["critical_path"]] for name, r in found.items()]
-    return datasheet.table(["row", "LUT4, logic", "carry", "LUT4 + 2 carry", "FF", "DSP", "block RAM", "distributed RAM",
+    return datasheet.table(["row", "LUT4, logic", "carry", "LUT4 + 2 carry", "FF", "DSP", "block RAM",
+                            "distributed RAM",
                             "Fmax, MHz: min / median / max", "critical path of the median"], body)
 
 
@@ -720,9 +746,11 @@ def few_blocks(rows):
 
 
 def few_classes(rows):
-    """Classes by shape, 10^6 pairs/s by either programme; of random pairs in general position those of the full range."""
+    """Classes by shape, 10^6 pairs/s by either programme; of random pairs in general position those of the full
+    range."""
     shapes = [*dict.fromkeys(r["row"] for r in rows)]
-    classes = [name for name in dict.fromkeys(r["class"] for r in rows) if not name.startswith("general ") or name == TYPICAL]
+    classes = [name for name in dict.fromkeys(r["class"] for r in rows) if not name.startswith("general ")
+               or name == TYPICAL]
     rate = {(r["row"], r["class"]): [r["10^6 pairs/s, EXHAUSTIVE"], r["10^6 pairs/s, DIRECTED"]] for r in rows}
     return (["class", *(f"`{shape}`: {programme}" for shape in shapes for programme in ("EXHAUSTIVE", "DIRECTED"))],
             [[name, *(x for shape in shapes for x in rate.get((shape, name), ["-", "-"]))] for name in classes])
@@ -736,12 +764,14 @@ def few_owners(rows):
     blocks = sorted({r["block"] for r in rows} - {"all"}, key=lambda name: (-of(chips[-1], [name], "sites"), name))
     line = lambda title, names: [title, *(of(chip, names, "sites") for chip in chips),
                                  *(of(chips[-1], names, column) for column in ("FF", "DSP", "block RAM"))]
-    return (["block", *(f"`{chip}`: sites" for chip in chips), *(f"`{chips[-1]}`: {c}" for c in ("FF", "DSP", "block RAM"))],
+    return (["block", *(f"`{chip}`: sites" for chip in chips),
+             *(f"`{chips[-1]}`: {c}" for c in ("FF", "DSP", "block RAM"))],
             [*(line(f"`{name}`" if name.startswith("cchip_") else name, [name]) for name in blocks[:9]),
              line(f"{len(blocks) - 9} others", blocks[9:]), line("all", ["all"])])
 
 
-# tables that are too long for the page, which shows what these make of their lines; all lines are in docs/figures/fpga_NAME.csv
+# tables that are too long for the page, which shows what these make of their lines; all lines are in
+# docs/figures/fpga_NAME.csv
 LONG = {"blocks": few_blocks, "classes": few_classes, "chip_bill": few_owners}
 
 
@@ -784,7 +814,8 @@ def check():
         for page, file in itertools.zip_longest(shown, want, fillvalue="(no line)"):
             if page != file:
                 differ += 1
-                print(f"docs/hardware/fpga.md, table {name}:\n  page: {page}\n  {csv_of(name).relative_to(ROOT)}: {file}")
+                print(f"docs/hardware/fpga.md, table {name}:\n  page: {page}\n  {csv_of(name).relative_to(ROOT)}: "
+                      f"{file}")
     print(f"{len(LONG)} short tables, {differ} lines differ from their files")
     return differ
 
@@ -818,7 +849,8 @@ def measure(chosen, options):
             bar.total += 1
             return pool.submit(bar.counted(attempt), failures, *job)
 
-        beats = {shape: submit(mean_beats, shape, options) for shape in dict.fromkeys(row.shape for row in chosen) if shape}
+        beats = {shape: submit(mean_beats, shape, options)
+                 for shape in dict.fromkeys(row.shape for row in chosen) if shape}
         counts = {(row.name, family): submit(count_family, row, family)
                   for row in chosen if options.families and row.families for family in FAMILIES}
         syntheses = {row: submit(synthesise, row, options) for row in chosen}
@@ -830,7 +862,8 @@ def measure(chosen, options):
             reports = {seed: job.result() for seed, job in jobs.items()}
             if None in reports.values():
                 continue
-            found[row.name] = figures(row, syntheses[row].result(), reports, beats[row.shape].result() or {} if row.shape else {})
+            found[row.name] = figures(row, syntheses[row].result(), reports, beats[row.shape].result()
+                                      or {} if row.shape else {})
             of_row = {family: job.result() for (name, family), job in counts.items() if name == row.name}
             if None not in of_row.values() and of_row:
                 found[row.name]["families"] = of_row
@@ -878,9 +911,11 @@ def save(found):
 
 def name_tree():
     """Writes into the page which RTL was measured; changes of rtl/ that are not committed have no name."""
-    git = lambda *command: subprocess.run(["git", "-C", str(ROOT), *command], check=True, stdout=subprocess.PIPE, text=True).stdout.strip()
+    git = lambda *command: subprocess.run(["git", "-C", str(ROOT), *command], check=True, stdout=subprocess.PIPE,
+                                          text=True).stdout.strip()
     if git("status", "--porcelain", "rtl"):
-        say("fpga.py: rtl/ has changes that are not committed; docs/hardware/fpga.md still names the tree measured before")
+        say("fpga.py: rtl/ has changes that are not committed; docs/hardware/fpga.md still names the tree measured "
+            "before")
         return
     text = re.sub(r"git tree `[0-9a-f]{40}` of `rtl/`\n\(commit \w+;",
                   f"git tree `{git('rev-parse', 'HEAD:rtl')}` of `rtl/`\n(commit {git('rev-parse', '--short', 'HEAD')};", PAGE.read_text())
@@ -888,15 +923,16 @@ def name_tree():
 
 
 def with_others(name, table, found):
-    """The table with the lines that the page, or the file of a long one, has of rows that are not in found, in the order of rows(); None if its lines do
-    not begin with the name of their row."""
+    """The table with the lines that the page, or the file of a long one, has of rows that are not in found, in the
+    order of rows(); None if its lines do not begin with the name of their row."""
     order = list(rows())
     row = lambda line: line.split("|")[1].strip(" `")
     head, lines = table.splitlines()[:2], table.splitlines()[2:]
     if not lines or not all(row(line) in order for line in lines):
         return None
     present = present_table(name)
-    others = [line for line in present[2:] if row(line) in order and row(line) not in found] if present[:2] == head else []
+    others = [line for line in present[2:] if row(line) in order
+              and row(line) not in found] if present[:2] == head else []
     return "\n".join([*head, *sorted(others + lines, key=lambda line: order.index(row(line)))]) + "\n"
 
 
@@ -921,7 +957,8 @@ def show_estimates(chosen, options):
             continue
         count = options.rows.get(row.name, options.seeds) if options.rows else 1
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-            found = pool.map(lambda seed: attempt(failures, estimate, row, synthesis, seed, options), range(1, count + 1))
+            found = pool.map(lambda seed: attempt(failures, estimate, row, synthesis, seed, options),
+                             range(1, count + 1))
             timings = {seed: timing for seed, timing in enumerate(found, 1) if timing}
         if timings:
             timing = timings[min(timings)]

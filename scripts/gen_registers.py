@@ -4,14 +4,14 @@
 
 usage: gen_registers.py [--check]
 
-Sources: rtl/regs/cchip_subsystem.rdl and cchip_chip.rdl; what both have in common is in cchip_common.rdl. Without an option
-three files are written for each; with --check nothing is written and the exit code is 1 if one of them is stale (the line
-printed says which). They are committed: only this script needs systemrdl-compiler, which `make venv` installs; without it
-the exit code is 77.
+Sources: rtl/regs/cchip_subsystem.rdl and cchip_chip.rdl; what both have in common is in cchip_common.rdl. Without an
+option three files are written for each; with --check nothing is written and the exit code is 1 if one of them is stale
+(the line printed says which). They are committed: only this script needs systemrdl-compiler, which `make venv`
+installs; without it the exit code is 77.
 
 What becomes hardware: registers and arrays of them, flat register files and arrays of them, 32 bits, fields with the
-properties of KINDS below. What is `external` is a request to another module, which may hold it in a memory; it may have 64
-bits. Anything else is an error."""
+properties of KINDS below. What is `external` is a request to another module, which may hold it in a memory; it may have
+64 bits. Anything else is an error."""
 import os
 import pathlib
 import sys
@@ -24,7 +24,8 @@ try:
     import systemrdl
 except ImportError:
     python = ROOT / "build/venv/bin/python"
-    if list((ROOT / "build/venv").glob("lib/python3*/site-packages/systemrdl/__init__.py")) and sys.executable != str(python):
+    if list((ROOT / "build/venv").glob("lib/python3*/site-packages/systemrdl/__init__.py")) and sys.executable != str(
+        python):
         os.execv(python, [python, *sys.argv])
     print("gen_registers.py: systemrdl-compiler is not installed: make venv")
     sys.exit(77)
@@ -54,14 +55,16 @@ def note(name):
 def field(node):
     return {"name": node.inst_name, "lsb": node.lsb, "width": node.width, "desc": node.get_property("desc") or "",
             "sw": node.get_property("sw").name, "hw": node.get_property("hw").name, "reset": node.get_property("reset"),
-            "flags": sorted(name for name in node.list_properties() if name not in ("sw", "hw", "desc", "name", "reset"))}
+            "flags": sorted(name for name in node.list_properties()
+                            if name not in ("sw", "hw", "desc", "name", "reset"))}
 
 
 def register(node, top, name, count, stride, offset):
     """top: the register itself, or the register file that it is in."""
     return {"name": name, "count": count, "stride": stride, "address": offset + node.raw_address_offset,
             "external": top.inst_name if top.external else None,
-            "desc": node.get_property("desc") or "", "regwidth": node.get_property("regwidth"), "accesswidth": node.get_property("accesswidth"),
+            "desc": node.get_property("desc") or "", "regwidth": node.get_property("regwidth"),
+            "accesswidth": node.get_property("accesswidth"),
             "fields": [field(f) for f in sorted(node.fields(), key=lambda f: -f.lsb)]}
 
 
@@ -174,8 +177,10 @@ def ports(registers):
         yield "output", 1, 1, f"hwif_out_{name}_write"
 
 
-EXTERNAL = {"raddr": "word address of the external register that is read", "ack": "answers a read, on its clock or later",
-            "rdata": "the word; 0 without hwif_in_external_ack", "waddr": "word address of the external register that is written",
+EXTERNAL = {"raddr": "word address of the external register that is read",
+            "ack": "answers a read, on its clock or later",
+            "rdata": "the word; 0 without hwif_in_external_ack",
+            "waddr": "word address of the external register that is written",
             "wdata": "what is written", "wstrb": "the bytes that are written"}
 
 
@@ -190,7 +195,8 @@ def meaning(direction, name):
     if direction == "input":
         return {"hwset": "1 for a clock: the event has come", "hwclr": "1 for a clock: clears the field"}.get(
             rest[-1], "what hardware writes; a flip-flop outside")
-    return {"read": "1 for a clock: is read", "write": "1 for a clock: is written"}.get(rest[-1] if rest else "", "the field")
+    return {"read": "1 for a clock: is read",
+            "write": "1 for a clock: is written"}.get(rest[-1] if rest else "", "the field")
 
 
 def port_line(direction, width, count, name, end):
@@ -210,7 +216,8 @@ def externals(registers):
 
 
 def span(width, count):
-    return "" if width * count == 1 else f"[{width * count - 1}:0]" if count == 1 or width == 1 else f"[{count}*{width}-1:0]"
+    return ("" if width * count == 1 else f"[{width * count - 1}:0]" if count == 1
+            or width == 1 else f"[{count}*{width}-1:0]")
 
 
 def part(name, width, count, i):
@@ -232,7 +239,8 @@ def read_word(r, i):
         elif k == "pulse":
             pieces.append(f"{f['width']}'d0")
         else:
-            pieces.append(part(f"hwif_in_{signal(r, f)}" if k == "input" else f"{signal(r, f)}_q", f["width"], r["count"], i))
+            pieces.append(part(f"hwif_in_{signal(r, f)}" if k == "input" else f"{signal(r, f)}_q", f["width"],
+                               r["count"], i))
         position = f["lsb"]
     pieces += [f"{position}'d0"] if position else []
     return pieces[0] if len(pieces) == 1 else "{" + ", ".join(pieces) + "}"
@@ -293,8 +301,8 @@ def blocks(groups):
 
 
 def chosen(targets, name, address, enable):
-    """Assignments of a vector whose bit k is 1 if enable is 1 and the address is in targets[k], by blocks of groups of eight
-    words. (No case statement: synthesis makes a ROM of a large one.)"""
+    """Assignments of a vector whose bit k is 1 if enable is 1 and the address is in targets[k], by blocks of groups of
+    eight words. (No case statement: synthesis makes a ROM of a large one.)"""
     lines, found = [], {}
     assigns = []
     for k, addresses in enumerate(targets):
@@ -307,7 +315,8 @@ def chosen(targets, name, address, enable):
                 wire = f"{name}_in_{first}" + (f"_to_{first + (1 << n) - 1}" if n else "")
                 if wire not in found:
                     top = ADDR_W - 3
-                    found[wire] = (first, f"  wire {wire} = {enable} && {address}[{top}:{3 + n}] == {top - 2 - n}'d{first >> n};")
+                    found[wire] = (first, f"  wire {wire} = {enable} && {address}[{top}:{3 + n}] == "
+                                          f"{top - 2 - n}'d{first >> n};")
                 word = word_of(list(low), address)
                 terms.append(f"({wire} && {word})" if word else wire)
         assigns.append(f"  assign {name}[{k}] = " + " || ".join(terms) + ";")
@@ -458,7 +467,8 @@ BUS = [("input", 1, "clk"), ("input", 1, "rst"),
        ("input", 1, "s_axil_bready"), ("output", 2, "s_axil_bresp"), ("input", 1, "s_axil_arvalid"),
        ("output", 1, "s_axil_arready"), ("input", ADDR_W, "s_axil_araddr"), ("input", 3, "s_axil_arprot"),
        ("output", 1, "s_axil_rvalid"), ("input", 1, "s_axil_rready"), ("output", 32, "s_axil_rdata"),
-       ("output", 2, "s_axil_rresp"), ("output", ADDR_W - 2, "hwif_out_external_raddr"), ("input", 1, "hwif_in_external_ack"),
+       ("output", 2, "s_axil_rresp"), ("output", ADDR_W - 2, "hwif_out_external_raddr"),
+       ("input", 1, "hwif_in_external_ack"),
        ("input", 32, "hwif_in_external_rdata"), ("output", ADDR_W - 2, "hwif_out_external_waddr"),
        ("output", 32, "hwif_out_external_wdata"), ("output", 4, "hwif_out_external_wstrb")]
 
@@ -486,7 +496,8 @@ def verilog(name_of_map, registers):
             row = f["width"] * r["count"]
             declarations.append(f"  reg {span(f['width'], r['count']) + ' ' if row > 1 else ''}{signal(r, f)}_q;")
             value = f"{f['width']}'h{f['reset']:X}"
-            resets.append(f"      {signal(r, f)}_q <= " + (value if r["count"] == 1 else f"{{{r['count']}{{{value}}}}}") + ";")
+            resets.append(f"      {signal(r, f)}_q <= "
+                          + (value if r["count"] == 1 else f"{{{r['count']}{{{value}}}}}") + ";")
             outputs.append(f"  assign hwif_out_{signal(r, f)} = {signal(r, f)}_q;")
         for address, i, _ in words(r) if writable(r) else []:
             updates += ["      " + line for f in r["fields"] for line in update(r, f, i, len(strobes))]
@@ -505,9 +516,12 @@ def verilog(name_of_map, registers):
             external_outputs.append(f"  assign hwif_out_{name}_write = strobe_q[{len(strobes)}];")
             strobes.append(written)
     return within_columns(FRAME.format(
-        note=note(name_of_map), module=f"{name_of_map}_regs", ports="\n".join(port_lines), top=ADDR_W - 3, addr_top=ADDR_W - 1,
-        strobes=len(strobes) - 1, strobe_count=len(strobes), write_choice=chosen(strobes, "written", "waddr_q", "decode"),
-        selects=len(selects) - 1, select_count=len(selects), read_choice=chosen(selects, "selected", "raddr_q", "read_q"),
+        note=note(name_of_map), module=f"{name_of_map}_regs", ports="\n".join(port_lines), top=ADDR_W - 3,
+        addr_top=ADDR_W - 1,
+        strobes=len(strobes) - 1, strobe_count=len(strobes),
+        write_choice=chosen(strobes, "written", "waddr_q", "decode"),
+        selects=len(selects) - 1, select_count=len(selects),
+        read_choice=chosen(selects, "selected", "raddr_q", "read_q"),
         words_count=len(read_words), words="\n".join(f"      ({word} & {{32{{select_q[{k}]}}}}) |"
                                                      for k, word in enumerate(read_words)),
         declarations="\n".join(declarations), resets="\n".join(resets), updates="\n".join(updates),
@@ -522,7 +536,8 @@ def cpp(name, registers):
     guard = f"CCHIP_INTERNAL_WIRE_{namespace.upper()}_HPP"
     lines = ["// SPDX-License-Identifier: Apache-2.0", f"// {note(name)}", "/// \\file",
              f"/// Byte offsets, masks and shifts of the registers of {module}; see docs/{page_name}.",
-             f"#ifndef {guard}", f"#define {guard}", "", "#include <cstdint>", "", f"namespace cchip::{namespace} {{", ""]
+             f"#ifndef {guard}", f"#define {guard}", "", "#include <cstdint>", "",
+             f"namespace cchip::{namespace} {{", ""]
     for r in registers:
         lines += [f"/// {r['desc']}.".replace("..", "."), f"namespace {r['name']} {{"]
         if r["count"] == 1:
@@ -539,8 +554,9 @@ def cpp(name, registers):
             if f["reset"] is not None:
                 lines.append(f"constexpr std::uint32_t {f['name']}_reset = 0x{f['reset']:X};")
         lines += [f"}}  // namespace {r['name']}", ""]
-    lines = [part for line in lines for part in (textwrap.wrap(line, 120, subsequent_indent="/// ", break_long_words=False,
-             break_on_hyphens=False) if line.startswith("/// ") and len(line) > 120 else [line])]
+    lines = [part for line in lines
+             for part in (textwrap.wrap(line, 120, subsequent_indent="/// ", break_long_words=False,
+break_on_hyphens=False) if line.startswith("/// ") and len(line) > 120 else [line])]
     return "\n".join(lines + [f"}}  // namespace cchip::{namespace}", "", "#endif", ""])
 
 
@@ -551,7 +567,8 @@ ACCESS = {"constant": "ro", "input": "ro", "plain": "rw", "pulse": "wo, reads 0"
 def page(name, title, registers):
     _, namespace, header, _ = MAPS[name]
     lines = ["<!-- SPDX-License-Identifier: Apache-2.0 -->", f"<!-- {note(name)} -->", f"# {title}", "",
-             f"AXI4-Lite, 32-bit words, little endian. C++: `cchip::{namespace}` of `<cchip/internal/wire/{header}>`. RTL: "
+             f"AXI4-Lite, 32-bit words, little endian. C++: `cchip::{namespace}` of `<cchip/internal/wire/{header}>`. "
+             "RTL: "
              f"[{name}_regs](../modules/{name}_regs.md). A read where no register is and a write where nothing can "
              "be written are answered `SLVERR`. Bits that are not listed read 0; writing them does nothing.", "",
              "| offset | register | what |", "|---|---|---|"]

@@ -80,7 +80,8 @@ def svg_text(figure):
 
 
 def page_and_plots(usage, page, run, plots, producer, read, tables, block=""):
-    """Command line of a script whose page and plots come from the CSV file of one run: --csv PATH, --check, --check-plot.
+    """Command line of a script whose page and plots come from the CSV file of one run: --csv PATH, --check,
+    --check-plot.
 
     run: the checked-in CSV; plots: path -> function that draws it; producer: what to say if there is no CSV; read: its
     text -> what tables and the functions of plots take; block: name of the page's generated block."""
@@ -104,5 +105,6 @@ def page_and_plots(usage, page, run, plots, producer, read, tables, block=""):
         return compare(page, page_with(page, tables(found), block), script)
     if arguments.check_plot:
         return max((compare(plot, draw(found), script) for plot, draw in plots.items()), default=0)
-    write({run: text, page: page_with(page, tables(found), block), **{plot: draw(found) for plot, draw in plots.items()}})
+    write({run: text, page: page_with(page, tables(found), block),
+           **{plot: draw(found) for plot, draw in plots.items()}})
     return 0

@@ -42,7 +42,8 @@ def attribute(name, names, first):
     if bus:
         signals = [member(other)[1] for other in names if member(other)[0] == bus]
         info = f"xilinx.com:interface:aximm:1.0 {bus} {signal}"
-        more = f"PROTOCOL {BUSES[bus][1]}, READ_WRITE_MODE {channels(signals)}, SUPPORTS_NARROW_BURST 0" if first else ""
+        more = (f"PROTOCOL {BUSES[bus][1]}, READ_WRITE_MODE {channels(signals)}, SUPPORTS_NARROW_BURST 0"
+                if first else "")
     elif name == "clk":
         info, found = "xilinx.com:signal:clock:1.0 clk CLK", buses(names)
         more = (f"ASSOCIATED_BUSIF {':'.join(found)}, " if found else "") + "ASSOCIATED_RESET rst"

@@ -4,8 +4,8 @@
 
 usage: ip_xact.py FOLDER        FOLDER: what export.py wrote, with cchip_chip.v; FOLDER/cchip_chip.xml is written
 
-Registers come from rtl/regs by systemrdl-compiler and PeakRDL-ipxact, all else from the ports and parameters of the Verilog. `make venv`
-installs both packages; without them the exit code is 77."""
+Registers come from rtl/regs by systemrdl-compiler and PeakRDL-ipxact, all else from the ports and parameters of the
+Verilog. `make venv` installs both packages; without them the exit code is 77."""
 import os
 import pathlib
 import re
@@ -21,7 +21,8 @@ try:
     from peakrdl_ipxact.exporter import IPXACTExporter, Standard
 except ImportError:
     python = ROOT / "build/venv/bin/python"
-    if list((ROOT / "build/venv").glob("lib/python3*/site-packages/peakrdl_ipxact/__init__.py")) and sys.executable != str(python):
+    if list((ROOT / "build/venv").glob(
+        "lib/python3*/site-packages/peakrdl_ipxact/__init__.py")) and sys.executable != str(python):
         os.execv(python, [python, *sys.argv])
     print("ip_xact.py: PeakRDL-ipxact is not installed: make venv")
     sys.exit(77)
@@ -58,13 +59,16 @@ def bus_interface(bus, names):
     """A bus with the names of AXI for its ports; its clock is among them."""
     mode, protocol = interfaces.BUSES[bus]
     mapped = [(signal, name) for name in names for owner, signal in [interfaces.member(name)] if owner == bus]
-    maps = [element("portMap", element("logicalPort", element("name", logical)), element("physicalPort", element("name", physical)))
+    maps = [element("portMap", element("logicalPort", element("name", logical)),
+                    element("physicalPort", element("name", physical)))
             for logical, physical in [("ACLK", "clk"), *mapped]]
     vlnv = {"vendor": "amba.com", "library": "AMBA4", "version": "r0p0_0"}
-    reference = (element("memoryMapRef", memoryMapRef=bus) if mode == "slave" else element("addressSpaceRef", addressSpaceRef=bus))
+    reference = (element("memoryMapRef", memoryMapRef=bus) if mode == "slave"
+                 else element("addressSpaceRef", addressSpaceRef=bus))
     return element(
         "busInterface", element("name", bus), element("busType", name=AMBA[protocol], **vlnv),
-        element("abstractionTypes", element("abstractionType", element("abstractionRef", name=f"{AMBA[protocol]}_rtl", **vlnv),
+        element("abstractionTypes", element("abstractionType",
+                                            element("abstractionRef", name=f"{AMBA[protocol]}_rtl", **vlnv),
                                             element("portMaps", *maps))),
         element(mode, reference))
 
@@ -103,23 +107,27 @@ def component(folder):
         element("views", element("view", element("name", "rtl"), element("envIdentifier", "verilogSource::"),
                                  element("componentInstantiationRef", "verilog"))),
         element("instantiations", element(
-            "componentInstantiation", element("name", "verilog"), element("language", "Verilog"), element("moduleName", TOP),
-            element("moduleParameters", *(element("moduleParameter", element("name", name), element("value", name), dataType="integer")
-                                          for name, _, _ in values)),
+            "componentInstantiation", element("name", "verilog"), element("language", "Verilog"),
+            element("moduleName", TOP),
+            element("moduleParameters",
+                    *(element("moduleParameter", element("name", name), element("value", name), dataType="integer")
+                      for name, _, _ in values)),
             element("fileSetRef", element("localName", "rtl")))),
         element("ports", *(port(*one) for one in ports))))
     whole.append(element("fileSets", element("fileSet", element("name", "rtl"), element(
         "file", element("name", f"{TOP}.v"), element("fileType", "verilogSource-2001")))))
     whole.append(element("description", "Collision detection as a device"))
     whole.append(element("parameters", *(
-        element("parameter", element("name", name), element("description", meaning), element("value", value), parameterId=name,
+        element("parameter", element("name", name), element("description", meaning), element("value", value),
+                parameterId=name,
                 resolve="user", type="longint") for name, value, meaning in values)))
     for one in whole.iter():
         one.tail = None if one.tail is None or not one.tail.strip() else one.tail
         one.text = one.text if one.text and one.text.strip() else None
     xml.indent(whole)
     body = xml.tostring(whole, encoding="unicode")
-    path.write_text('<?xml version="1.0" encoding="UTF-8"?>\n<!-- SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1 -->\n'
+    path.write_text('<?xml version="1.0" encoding="UTF-8"?>\n<!-- SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1 '
+                    '-->\n'
                     f"<!-- Written by scripts/ip_xact.py. Do not edit. -->\n{body}\n")
 
 

@@ -7,30 +7,33 @@ usage: mutants.py [MODULE...] [options]     without MODULE every module that has
   --sample N      only N mutants, spread over the modules: for a look in short time
   --seed N        of the choice of mutants (default 1)
   --jobs N        programs at the same time (default 2)
-  --shard I/N     only every N-th module, counted from I = 1: for several machines; results of all are put together by --table
+  --shard I/N     only every N-th module, counted from I = 1: for several machines; results of all are put together by
+                  --table
   --build DIR     where unit_tests has been built (default build/release; `scripts/run mutants` builds it)
   --table         only the table of what was run so far
-  --write         put the modules that have run into docs/figures/mutants.csv, and the table of its rows into docs/develop/mutants.md
+  --write         put the modules that have run into docs/figures/mutants.csv, and the table of its rows into
+                  docs/develop/mutants.md
   --again         run those that live once more, with the unit tests of today
-  --least N       exit code 1 if of the mutants that can be told from the original fewer than N % were killed (default 0)
+  --least N       exit code 1 if of the mutants that can be told from the original fewer than N % were killed (default
+                  0)
   --alive         print the mutants that nothing killed
 
-Yosys changes a cell of the netlist of a module: an input or output inverted, at 0 or 1, or made to depend on another bit (its
-command `mutate`). All mutants of a module are in one netlist, of which an integer chooses one, so that it is translated and
-compiled once. The netlist takes the place of the module in the program of its unit tests, with the last set of parameters that
-these have; number 0, no mutant, must pass. A mutant is killed if the tests fail, crash, or run ten times as long. Modules
-without unit tests of their own are changed inside the module that uses them.
+Yosys changes a cell of the netlist of a module: an input or output inverted, at 0 or 1, or made to depend on another
+bit (its command `mutate`). All mutants of a module are in one netlist, of which an integer chooses one, so that it is
+translated and compiled once. The netlist takes the place of the module in the program of its unit tests, with the last
+set of parameters that these have; number 0, no mutant, must pass. A mutant is killed if the tests fail, crash, or run
+ten times as long. Modules without unit tests of their own are changed inside the module that uses them.
 
-A mutant that lives may be one that nobody can tell from the original. ABC compares both from the state in which all registers
-are 0, under any inputs: `proved` if no inputs of any length tell them apart, `bounded` if none of --depth clocks do (default 200).
-Alive is what can be told apart, or for which ABC needs more than a minute.
+A mutant that lives may be one that nobody can tell from the original. ABC compares both from the state in which all
+registers are 0, under any inputs: `proved` if no inputs of any length tell them apart, `bounded` if none of --depth
+clocks do (default 200). Alive is what can be told apart, or for which ABC needs more than a minute.
 
-Of one that lives docs/figures/mutants_alive.csv may say in a sentence why it cannot matter: by reading, not by proof. It counts as
-alive, and as explained. A row whose mutant is another one by now, or does not live, is an error.
+Of one that lives docs/figures/mutants_alive.csv may say in a sentence why it cannot matter: by reading, not by proof.
+It counts as alive, and as explained. A row whose mutant is another one by now, or does not live, is an error.
 
 Everything is kept below build/mutants; a second run goes on where the first one ended. The last line is
-`mutants=N equivalent=E killed=K alive=A explained=X`. Exit codes: 0 done, 1 a tool or a test without mutant failed, a row of
-mutants_alive.csv is out of date or --least was missed, 2 bad arguments."""
+`mutants=N equivalent=E killed=K alive=A explained=X`. Exit codes: 0 done, 1 a tool or a test without mutant failed, a
+row of mutants_alive.csv is out of date or --least was missed, 2 bad arguments."""
 import argparse
 import collections
 import concurrent.futures
@@ -54,9 +57,11 @@ OUT = ROOT / "build" / "mutants"
 PAGE = ROOT / "docs" / "develop" / "mutants.md"
 RECORD = ROOT / "docs" / "figures" / "mutants.csv"
 ALIVE = ROOT / "docs" / "figures" / "mutants_alive.csv"
-KINDS = ("illegal", "unreachable", "same", "speed")  # why a mutant that lives cannot matter; docs/develop/mutants.md has what they mean
+# why a mutant that lives cannot matter; docs/develop/mutants.md has what they mean
+KINDS = ("illegal", "unreachable", "same", "speed")
 COUNTS = ("mutants", "proved", "bounded", "killed", "differs", "undecided")
-COLUMNS = ("module", *COUNTS, "commit")  # module `ROOM/N`: N modules of a room together, until one of the room is recorded
+# module `ROOM/N`: N modules of a room together, until one of the room is recorded
+COLUMNS = ("module", *COUNTS, "commit")
 SELECTOR_W = 16
 SELECT = 'extern "C" int cchip_mutant();\n#include <cstdlib>\nint cchip_mutant() {\n  const char* chosen = std::getenv("CCHIP_MUTANT");\n' \
          "  return chosen ? std::atoi(chosen) : 0;\n}\n"
@@ -67,7 +72,8 @@ class Failed(Exception):
 
 
 def run(command, **more):
-    done = subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", **more)
+    done = subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          errors="replace", **more)
     if done.returncode:
         raise Failed(f"{' '.join(map(str, command))[:200]}: exit code {done.returncode}\n{done.stdout[-2000:]}")
     return done.stdout
@@ -89,7 +95,8 @@ ROOMS = list(dict.fromkeys(path.parent.name for path in FILES.values()))
 
 def uses(module):
     """Modules of the RTL that a module's file names, itself not."""
-    return {name for name in re.findall(r"\bcchip_\w+", re.sub(r"//.*", "", FILES[module].read_text())) if name in FILES and name != module}
+    return {name for name in re.findall(r"\bcchip_\w+", re.sub(r"//.*", "", FILES[module].read_text()))
+            if name in FILES and name != module}
 
 
 class Module:
@@ -115,7 +122,8 @@ class Module:
         return [line for line in (self.folder / "list").read_text().splitlines() if line]
 
     def place(self, number):
-        """Where mutant `number` is and what it does, for a reader: `$and cchip_x.v:85 A[3] cnot1 5`, of an instance its name."""
+        """Where mutant `number` is and what it does, for a reader: `$and cchip_x.v:85 A[3] cnot1 5`, of an instance its
+        name."""
         line = self.mutants()[number - 1]
         word = lambda option: (re.search(rf" -{option} (\S+)", line) or ["", ""])[1]
         cell = re.sub(r"^(\$\w+?)\$.*/(\w+\.v:\d+)\$\d+$", r"\1 \2", word("cell"))
@@ -145,7 +153,8 @@ class Module:
         return {FILES[name] for name in found}
 
     def selection(self):
-        return " ".join([self.name] + [pattern for name in self.inside for pattern in (name, f"$paramod\\{name}\\*", f"$paramod$*\\{name}")])
+        return " ".join([self.name] + [pattern for name in self.inside
+                                       for pattern in (name, f"$paramod\\{name}\\*", f"$paramod$*\\{name}")])
 
     def yosys(self, text, name):
         path = self.folder / name
@@ -154,41 +163,57 @@ class Module:
 
     def make(self, each, seed):
         """The program with all mutants; returns False if it is there already."""
-        key = hashlib.sha256(json.dumps([self.script(), self.selection(), each, seed] + [path.read_text() for path in sorted(self.needed())]).encode()).hexdigest()
-        if (self.folder / "key").exists() and (self.folder / "key").read_text() == key and (self.folder / "program").exists():
+        key = hashlib.sha256(json.dumps([self.script(), self.selection(), each, seed]
+                                        + [path.read_text() for path in sorted(self.needed())]).encode()).hexdigest()
+        if (self.folder / "key").exists() and (self.folder / "key").read_text() == key and (
+            self.folder / "program").exists():
             return
         self.folder.mkdir(parents=True, exist_ok=True)
         for old in self.folder.glob("results.json"):
             old.unlink()
-        self.yosys(self.prepared() + f"select -set own {self.selection()}\ntee -o {self.folder}/cells stat @own\n", "count.ys")
+        self.yosys(self.prepared() + f"select -set own {self.selection()}\ntee -o {self.folder}/cells stat @own\n",
+                   "count.ys")
         cells = sum(map(int, re.findall(r"Number of cells: +(\d+)", (self.folder / "cells").read_text())))
         count = max(16, min(96, cells // each))
         own = f"select -set own {self.selection()}\n"
-        self.yosys(self.prepared() + own + f"mutate -list {2 * count} -seed {seed} -o {self.folder}/list @own\n", "list.ys")
-        # not the clock (of another clock a netlist's simulation says nothing), not where a memory begins (Yosys writes constants only), and no output of registers that begin with a value, which a mutant would lose
-        begin = any(re.search(r"\breg\b[^;]*=|\binitial\b", FILES[name].read_text()) for name in (self.name, *self.inside))
-        lines = [line for line in self.mutants() if not re.search(r"-port (\w+_)?CLK |-cell \$auto\$mem\.cc:\d+:emit", line) and not (begin and "-port Q " in line)]
+        self.yosys(self.prepared() + own + f"mutate -list {2 * count} -seed {seed} -o {self.folder}/list @own\n",
+                   "list.ys")
+        # not the clock (of another clock a netlist's simulation says nothing), not where a memory begins (Yosys writes
+        # constants only), and no output of registers that begin with a value, which a mutant would lose
+        begin = any(re.search(r"\breg\b[^;]*=|\binitial\b", FILES[name].read_text())
+                    for name in (self.name, *self.inside))
+        lines = [line for line in self.mutants()
+                 if not re.search(r"-port (\w+_)?CLK |-cell \$auto\$mem\.cc:\d+:emit", line)
+                 and not (begin and "-port Q " in line)]
         lines = [lines[i * len(lines) // min(count, len(lines))] for i in range(min(count, len(lines)))]
-        (self.folder / "list").write_text("".join(line.replace("mutate ", f"mutate -ctrl mutant {SELECTOR_W} {number} ", 1) + "\n" for number, line in enumerate(lines, 1)))
-        self.yosys(self.prepared() + f"script {self.folder}/list\nwrite_verilog -noattr {self.folder}/netlist.v\n", "mutate.ys")
+        (self.folder / "list").write_text("".join(line.replace("mutate ", f"mutate -ctrl mutant {SELECTOR_W} {number} ",
+                                                               1) + "\n" for number, line in enumerate(lines, 1)))
+        self.yosys(self.prepared() + f"script {self.folder}/list\nwrite_verilog -noattr {self.folder}/netlist.v\n",
+                   "mutate.ys")
         text = (self.folder / "netlist.v").read_text()
         text = re.sub(r"(module [^;]*?)(, mutant\b|\bmutant, )", r"\1", text)
         text = re.sub(r"    \.mutant\(mutant\),?\n", "", text)
         text = re.sub(r",\n  \);", "\n  );", text)
-        text = re.sub(rf"  input \[{SELECTOR_W - 1}:0\] mutant;\n", "  import \"DPI-C\" function int cchip_mutant();\n  integer chosen_mutant = cchip_mutant();\n", text)
-        text = re.sub(rf"  wire \[{SELECTOR_W - 1}:0\] mutant;\n", f"  wire [{SELECTOR_W - 1}:0] mutant = chosen_mutant[{SELECTOR_W - 1}:0];\n", text)
+        text = re.sub(rf"  input \[{SELECTOR_W - 1}:0\] mutant;\n", "  import \"DPI-C\" function int cchip_mutant();\n "
+                                                                    " integer chosen_mutant = cchip_mutant();\n", text)
+        text = re.sub(rf"  wire \[{SELECTOR_W - 1}:0\] mutant;\n",
+                      f"  wire [{SELECTOR_W - 1}:0] mutant = chosen_mutant[{SELECTOR_W - 1}:0];\n", text)
         (self.folder / "netlist.v").write_text(text)
         (self.folder / "select.cpp").write_text(SELECT)
-        run(["verilator", "--cc", "-Wno-fatal", "-Wno-lint", "-fno-const-bit-op-tree", "-fno-dfg", "--x-assign", "unique", "--x-initial", "unique", "--prefix", self.model,
-             "--top-module", self.name, "--Mdir", self.folder / "model", "--output-split", "20000", self.folder / "netlist.v"])
+        run(["verilator", "--cc", "-Wno-fatal", "-Wno-lint", "-fno-const-bit-op-tree", "-fno-dfg", "--x-assign",
+             "unique", "--x-initial", "unique", "--prefix", self.model,
+             "--top-module", self.name, "--Mdir", self.folder / "model", "--output-split", "20000",
+             self.folder / "netlist.v"])
         ccache = os.environ.get("CMAKE_CXX_COMPILER_LAUNCHER", "")
-        run(["make", "-s", "-C", self.folder / "model", "-f", f"{self.model}.mk", f"{self.model}__ALL.a", f"CXX={ccache} c++ -w", "OPT_FAST=-O1", "OPT_SLOW=-O0"])
+        run(["make", "-s", "-C", self.folder / "model", "-f", f"{self.model}.mk", f"{self.model}__ALL.a",
+             f"CXX={ccache} c++ -w", "OPT_FAST=-O1", "OPT_SLOW=-O0"])
         run(["c++", "-c", self.folder / "select.cpp", "-o", self.folder / "select.o"])
         self.link()
         (self.folder / "key").write_text(key)
 
     def same_class(self):
-        """Is the class of the netlist, from outside, that of the RTL, against which the test was compiled? Not if Verilator kept other instances as members."""
+        """Is the class of the netlist, from outside, that of the RTL, against which the test was compiled? Not if
+        Verilator kept other instances as members."""
         def outside(path):
             text = re.sub(r"//.*|\n\s*\n", "\n", path.read_text())
             return re.findall(r"VL_(?:IN|OUT)\w*\([^)]*\)", text), re.findall(r"\w+\* const \w+;", text)
@@ -208,16 +233,20 @@ class Module:
         return str(target)
 
     def link(self):
-        """As unit_tests is linked, with the tests of this module alone and the netlist in front of the models; -z muldefs: the first definition counts."""
-        command = run(["ninja", "-C", self.build, "-t", "commands", "unit_tests"]).splitlines()[-1].split("&&")[1].split()
+        """As unit_tests is linked, with the tests of this module alone and the netlist in front of the models; -z
+        muldefs: the first definition counts."""
+        command = run(["ninja", "-C", self.build, "-t", "commands", "unit_tests"]).splitlines()[-1].split(
+            "&&")[1].split()
         tests = [part for part in command if "unit_tests.dir/" in part]
-        own = [part for part in tests if re.search(rf"/test_{self.name}\.cpp\.o$", part) or f"/test_{self.name}_" in part and self.tests_only_me(part)]
+        own = [part for part in tests if re.search(rf"/test_{self.name}\.cpp\.o$", part)
+               or f"/test_{self.name}_" in part and self.tests_only_me(part)]
         rest = [part for part in command if part not in tests]
         if not self.same_class():
             own = [self.compiled(part) for part in own]
         rest[rest.index("-o") + 1] = str(self.folder / "program")
         first = next(i for i, part in enumerate(rest) if part.endswith(".a"))
-        rest[first:first] = [*own, str(self.folder / "select.o"), str(self.folder / "model" / f"{self.model}__ALL.a"), "-Wl,-z,muldefs"]
+        rest[first:first] = [*own, str(self.folder / "select.o"), str(self.folder / "model" / f"{self.model}__ALL.a"),
+                             "-Wl,-z,muldefs"]
         run(rest, cwd=self.build)
 
     def tests_only_me(self, part):
@@ -230,8 +259,10 @@ class Module:
         """(exit code, or None after `limit` s; seconds)"""
         began = time.monotonic()
         try:
-            code = subprocess.run([self.folder / "program", "-a", "-w", "NoTests", "-f", self.folder / "names"], env={**os.environ, "CCHIP_MUTANT": str(mutant)}, timeout=limit,
-                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=self.build / "tests/unit").returncode
+            code = subprocess.run([self.folder / "program", "-a", "-w", "NoTests", "-f", self.folder / "names"],
+                                  env={**os.environ, "CCHIP_MUTANT": str(mutant)}, timeout=limit,
+                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                  cwd=self.build / "tests/unit").returncode
         except subprocess.TimeoutExpired:
             code = None
         return code, time.monotonic() - began
@@ -253,7 +284,8 @@ class Module:
         self.choose_tests()
         code, seconds = self.start(0, 600)
         if code != 0:
-            raise Failed(f"{self.name}: its tests fail on the netlist without a mutant (exit code {code}): {self.folder}/program -f {self.folder}/names")
+            raise Failed(f"{self.name}: its tests fail on the netlist without a mutant (exit code {code}): "
+                         f"{self.folder}/program -f {self.folder}/names")
         for number, (code, _) in zip(waits, pool.map(lambda number: self.start(number, 10 * seconds + 5), waits)):
             results[str(number)] = {"killed": "time" if code is None else "test"} if code != 0 else {}
         self.save(results)
@@ -270,9 +302,11 @@ class Module:
         """Is mutant `number` the same as the original? proved, bounded, differs or unknown."""
         line, folder = self.change(number)
         aiger = folder / "miter.aig"
-        text = (self.prepared() + "design -save base\nflatten\nrename -top gold\ndesign -stash gold\ndesign -load base\n" + line + "\nflatten\nrename -top gate\n"
+        text = (self.prepared() + "design -save base\nflatten\nrename -top gold\ndesign -stash gold\ndesign -load "
+                                  "base\n" + line + "\nflatten\nrename -top gate\n"
                 "design -copy-from gold -as gold gold\nmiter -equiv -flatten gold gate miter\nhierarchy -top miter\n"
-                "chformal -remove\nmemory -nordff\nopt -full\ntechmap\nopt -fast\nabc -g AND\ndffunmap\nopt_clean\nsetundef -undriven -zero\nsetundef -init -zero\n"
+                "chformal -remove\nmemory -nordff\nopt -full\ntechmap\nopt -fast\nabc -g AND\ndffunmap\nopt_clean\n"
+                "setundef -undriven -zero\nsetundef -init -zero\n"
                 f"aigmap\nwrite_aiger -zinit {aiger}\n")
         try:
             (folder / "compare.ys").write_text(text)
@@ -281,7 +315,8 @@ class Module:
             said = self.abc(read + " dsat; print_status; scorr; dprove -r; print_status; pdr -T 10; print_status")
             if re.search(r"disproved|was asserted|Output \d+ .* asserted", said):
                 return "differs"
-            if re.search(r"UNSATISFIABLE|Networks are equivalent|Property proved|proved", said) and not re.search(r"(?<!UN)SATISFIABLE\b", said):
+            if re.search(r"UNSATISFIABLE|Networks are equivalent|Property proved|proved",
+                         said) and not re.search(r"(?<!UN)SATISFIABLE\b", said):
                 return "proved"
             said = self.abc(f"{read} scorr; bmc3 -F {depth} -T 30")
             if "was asserted" in said:
@@ -295,7 +330,8 @@ class Module:
     def purged(self, change, name):
         """The text of what Yosys leaves of the module with a change, without what nothing reads; None if it fails."""
         script = self.folder / f"{name}.ys"
-        script.write_text(f"{self.prepared()}{change}\nflatten\nopt_expr\nopt_clean -purge\nwrite_rtlil {self.folder}/{name}.il\n")
+        script.write_text(f"{self.prepared()}{change}\nflatten\nopt_expr\nopt_clean -purge\nwrite_rtlil "
+                          f"{self.folder}/{name}.il\n")
         try:
             run(["yosys", "-q", "-s", script], timeout=120)
         except (Failed, subprocess.TimeoutExpired):
@@ -309,19 +345,22 @@ class Module:
         return self.purged("", "gold")
 
     def same_text(self, number):
-        """proved if the same text is left of the mutant and of the original: a change of what is not used. Else None."""
+        """proved if the same text is left of the mutant and of the original: a change of what is not used. Else
+        None."""
         text = self.purged(self.change(number)[0], f"same{number}/gate")
         return "proved" if text is not None and text == self.original() else None
 
     @staticmethod
     def abc(commands):
         """What it says; also if it does not end in time."""
-        return subprocess.run(["timeout", "40", "yosys-abc", "-c", commands], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace").stdout
+        return subprocess.run(["timeout", "40", "yosys-abc", "-c", commands], stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True, errors="replace").stdout
 
     def again(self):
         """Those that live have not run."""
         self.link()
-        self.save({number: result for number, result in self.results().items() if "killed" in result or result.get("same") in ("proved", "bounded")})
+        self.save({number: result for number, result in self.results().items() if "killed" in result
+                   or result.get("same") in ("proved", "bounded")})
 
     def judge(self, way, pool):
         """Asks way(number) about those that live and are not judged."""
@@ -357,8 +396,10 @@ def summary(chosen):
     for module in chosen:
         results = list(module.results().values())
         if results:
-            row = {kind: sum(result.get("same") == kind for result in results) for kind in ("proved", "bounded", "differs")}
-            row.update(module=module.name, mutants=len(results), killed=sum("killed" in result for result in results), commit=commit())
+            row = {kind: sum(result.get("same") == kind for result in results)
+                   for kind in ("proved", "bounded", "differs")}
+            row.update(module=module.name, mutants=len(results), killed=sum("killed" in result for result in results),
+                       commit=commit())
             row["undecided"] = len(results) - row["killed"] - row["proved"] - row["bounded"] - row["differs"]
             rows.append(row)
     return rows
@@ -372,7 +413,8 @@ def sentences(path):
             for row in csv.DictReader(file):
                 module = row.get("module", "")
                 if row["kind"] not in KINDS or not row["why"] or row["mutant"] in found[module]:
-                    raise Failed(f"{path.name}: {module} {row['mutant']}: twice, without a reason, or of a kind that is none of {', '.join(KINDS)}")
+                    raise Failed(f"{path.name}: {module} {row['mutant']}: twice, without a reason, or of a kind that "
+                                 f"is none of {', '.join(KINDS)}")
                 found[module][row["mutant"]] = row
     return found
 
@@ -412,7 +454,8 @@ def recorded():
     if not RECORD.exists():
         return []
     with RECORD.open() as file:
-        return [{column: row[column] if column in ("module", "commit") else int(row[column]) for column in COLUMNS} for row in csv.DictReader(file)]
+        return [{column: row[column] if column in ("module", "commit") else int(row[column]) for column in COLUMNS}
+                for row in csv.DictReader(file)]
 
 
 def record(rows):
@@ -444,7 +487,8 @@ def explained_of(rows):
 
 
 def table(rows):
-    lines = ["| room | modules | mutants | equivalent, proved | equivalent, bounded | killed | alive, told apart by ABC | alive, undecided | of these explained | killed of those that are not equivalent |",
+    lines = ["| room | modules | mutants | equivalent, proved | equivalent, bounded | killed | alive, told apart by "
+             "ABC | alive, undecided | of these explained | killed of those that are not equivalent |",
              "|---|---|---|---|---|---|---|---|---|---|"]
     rooms = collections.defaultdict(list)
     for row in rows:
@@ -454,14 +498,17 @@ def table(rows):
     for room, inside in rooms.items():
         all_sums = sums(inside)
         told = sum(all_sums[3:])
-        lines.append(f"| {room} | {sum(room_of(row)[1] for row in inside)} | " + " | ".join(map(str, [*all_sums, explained_of(inside)])) + f" | {100 * all_sums[3] / told if told else 100:.1f} % |")
+        lines.append(f"| {room} | {sum(room_of(row)[1] for row in inside)} | "
+                     + " | ".join(map(str, [*all_sums, explained_of(inside)]))
+                     + f" | {100 * all_sums[3] / told if told else 100:.1f} % |")
     return "\n".join(lines) + "\n"
 
 
 def arguments():
     parser = argparse.ArgumentParser(usage=argparse.SUPPRESS, add_help=False)
     parser.add_argument("modules", nargs="*")
-    for name, default in (("--each", 2), ("--sample", 0), ("--seed", 1), ("--jobs", 2), ("--depth", 200), ("--least", 0)):
+    for name, default in (("--each", 2), ("--sample", 0), ("--seed", 1), ("--jobs", 2), ("--depth", 200),
+                          ("--least", 0)):
         parser.add_argument(name, type=int, default=default)
     parser.add_argument("--shard", default="1/1")
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build" / "release")
@@ -503,7 +550,8 @@ def main():
     found = modules(options.build)
     unknown = [name for name in options.modules if name not in found]
     if unknown or not found:
-        print(f"mutants.py: no unit tests of {unknown[0]}" if unknown else f"mutants.py: no models in {options.build}; run: scripts/run mutants", file=sys.stderr)
+        print(f"mutants.py: no unit tests of {unknown[0]}" if unknown
+              else f"mutants.py: no models in {options.build}; run: scripts/run mutants", file=sys.stderr)
         return 2
     chosen = [found[name] for name in options.modules] or list(found.values())
     part, of = map(int, options.shard.split("/"))
@@ -533,13 +581,15 @@ def main():
         for module in chosen:
             for number, result in module.results().items():
                 if result.get("same") in ("differs", "unknown"):
-                    print(f"{module.name} {number} {result['same']}: {module.place(int(number))}: {known[module.name].get(number, {}).get('why', 'not explained')}")
+                    print(f"{module.name} {number} {result['same']}: {module.place(int(number))}: "
+                          f"{known[module.name].get(number, {}).get('why', 'not explained')}")
     if options.write:
         record(rows)
         datasheet.rewrite(PAGE, "mutants", table(recorded()))
     all_sums = sums(rows)
     killed, told = all_sums[3], sum(all_sums[3:])
-    print(f"mutants={all_sums[0]} equivalent={all_sums[1] + all_sums[2]} killed={killed} alive={told - killed} explained={explained_of(rows)}")
+    print(f"mutants={all_sums[0]} equivalent={all_sums[1] + all_sums[2]} killed={killed} alive={told - killed} "
+          f"explained={explained_of(rows)}")
     if told and 100 * killed < options.least * told:
         failures.append("too few")
         print(f"mutants.py: {killed} of {told} killed, less than {options.least} %", file=sys.stderr)

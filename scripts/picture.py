@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Draws the meshes of a PLY that `cchip ... --ply` wrote, as PNG on a transparent ground. The camera stands back until all
-is in the picture. Needs Python's standard library only; some seconds for each 10,000 faces.
+"""Draws the meshes of a PLY that `cchip ... --ply` wrote, as PNG on a transparent ground. The camera stands back until
+all is in the picture. Needs Python's standard library only; some seconds for each 10,000 faces.
 Exit codes: 0 done, 1 the picture is stale or missing, 2 wrong command line or a file that is not such a PLY."""
 import argparse
 import math
@@ -46,7 +46,8 @@ def normalised(faces, edges):
     corners = [corner for corners, _ in faces for corner in corners]
     least, greatest = (tuple(f(axis) for axis in zip(*corners)) for f in (min, max))
     size = max(g / 2 - l / 2 for g, l in zip(greatest, least)) or 1.0   # of half the box: the whole may overflow
-    return tuple([([tuple((x / 2 - g / 4 - l / 4) / size for x, l, g in zip(corner, least, greatest)) for corner in corners], colour)
+    return tuple([([tuple((x / 2 - g / 4 - l / 4) / size for x, l, g in zip(corner, least, greatest))
+                    for corner in corners], colour)
                   for corners, colour in part] for part in (faces, edges))
 
 
@@ -64,7 +65,8 @@ def read_ply(path):
     properties = [line.split()[-1] for line in lines if line.startswith("property")]
     colours = ["red", "green", "blue"]
     has_edges = len(names) == 3
-    if ("format binary_little_endian 1.0" not in lines or [name[0] for name in names] != ["vertex", "face", "edge"][:2 + has_edges]
+    if ("format binary_little_endian 1.0" not in lines
+        or [name[0] for name in names] != ["vertex", "face", "edge"][:2 + has_edges]
             or properties != ["x", "y", "z", *colours, "vertex_indices"] + has_edges * ["vertex1", "vertex2"]):
         raise NotOurs
     counts = [int(name[1]) for name in names]
@@ -76,14 +78,16 @@ def read_ply(path):
         corners = body[at]
         numbers = struct.unpack_from(f"<{corners}i", body, at + 1)
         at += 1 + 4 * corners
-        if outlines and numbers[:2] == (outlines[-1][0], outlines[-1][-1]):   # the second half of a quad: faces share no vertices
+        # the second half of a quad: faces share no vertices
+        if outlines and numbers[:2] == (outlines[-1][0], outlines[-1][-1]):
             outlines[-1] += numbers[2:]
         else:
             outlines.append(numbers)
     if not outlines:
         raise NotOurs
     edges = [struct.unpack_from("<2i", body, at + 8 * i) for i in range(counts[2] if has_edges else 0)]
-    return tuple([([vertices[i][:3] for i in numbers], vertices[numbers[0]][3:]) for numbers in part] for part in (outlines, edges))
+    return tuple([([vertices[i][:3] for i in numbers], vertices[numbers[0]][3:]) for numbers in part]
+                 for part in (outlines, edges))
 
 
 def corner_normals(faces):
@@ -129,7 +133,8 @@ class Camera:
         upright = abs(self.back[2]) < 0.999
         self.right = unit(cross((0, 0, 1) if upright else (0, 1, 0), self.back))
         self.up = cross(self.back, self.right)
-        self.lights = [unit([sum(l * axis[i] for l, axis in zip(light, (self.right, self.up, self.back))) for i in range(3)])
+        self.lights = [
+            unit([sum(l * axis[i] for l, axis in zip(light, (self.right, self.up, self.back))) for i in range(3)])
                        for light in (KEY_LIGHT, FILL_LIGHT)]
         self.half = unit(tuple(a + b for a, b in zip(self.lights[0], self.back)))
         self.target, self.distance, self.span = target, distance, span
@@ -139,7 +144,8 @@ class Camera:
         half_width = math.tan(math.radians(ANGLE / 2))
         axes = [(self.right, half_width * (1 - 2 * MARGIN)), (self.up, half_width * HEIGHT / WIDTH * (1 - 2 * MARGIN))]
         depths = [dot(p, self.back) for p in points]
-        # A point at depth z is in the picture if |place - middle| <= slope * (eye - z), for the eye's place along `back`.
+        # A point at depth z is in the picture if |place - middle| <= slope * (eye - z), for the eye's place along
+        # `back`.
         eye, middles = max(depths), []
         for axis, slope in axes:
             most = max(dot(p, axis) + slope * z for p, z in zip(points, depths))
@@ -150,7 +156,8 @@ class Camera:
         eye = max(eye, max(depths) + 0.01 * size) if size > 0 else eye + 1   # no point in the eye
         nearest = max(depths)
         self.distance = eye - nearest
-        self.target = tuple(middles[0] * r + middles[1] * u + nearest * b for r, u, b in zip(self.right, self.up, self.back))
+        self.target = tuple(middles[0] * r + middles[1] * u + nearest * b
+                            for r, u, b in zip(self.right, self.up, self.back))
         self.span = 2 * half_width * self.distance
 
     def project(self, point):
@@ -158,7 +165,8 @@ class Camera:
         p = sub(point, self.target)
         depth = self.distance - dot(p, self.back)
         scale = WIDTH * SAMPLES / self.span * self.distance / depth
-        return (WIDTH * SAMPLES / 2 + scale * dot(p, self.right), HEIGHT * SAMPLES / 2 - scale * dot(p, self.up), 1 / depth)
+        return (WIDTH * SAMPLES / 2 + scale * dot(p, self.right),
+                HEIGHT * SAMPLES / 2 - scale * dot(p, self.up), 1 / depth)
 
 
 # The demo's pose deep from below, where the gear cuts through the tube.
@@ -303,7 +311,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("meshes", metavar="MESHES.ply")
     parser.add_argument("picture", metavar="PICTURE.png")
-    parser.add_argument("--check", action="store_true", help="compare: exit code 1 if the picture is not of these meshes")
+    parser.add_argument("--check", action="store_true",
+                        help="compare: exit code 1 if the picture is not of these meshes")
     parser.add_argument("--view", metavar=("X", "Y", "Z"), type=float, nargs=3, default=VIEW,
                         help="direction from the meshes to the camera (default: %s %s %s)" % VIEW)
     parser.add_argument("--demo", action="store_true", help="the camera of the documents' picture of cchip demo")
@@ -315,7 +324,8 @@ def main():
     except OSError as error:
         parser.error(f"{options.meshes}: cannot be read ({error.strerror}); check its name and permissions")
     except (NotOurs, struct.error, IndexError, ValueError):
-        parser.error(f"{options.meshes}: not written by cchip; make it with the option --ply of cchip collide, meshpairs or demo")
+        parser.error(f"{options.meshes}: not written by cchip; make it with the option --ply of cchip collide, "
+                     "meshpairs or demo")
     camera = DEMO
     if not options.demo:
         camera = Camera(options.view)

@@ -3,12 +3,14 @@
 """The drawn pictures of docs/pictures, as SVG.
 
 usage: pictures.py [--check]
-  chip.svg     the whole chip as in the paper's figure 2; a block is green if docs/hardware/fpga.md has a row of it with an Fmax
+  chip.svg     the whole chip as in the paper's figure 2; a block is green if docs/hardware/fpga.md has a row of it with
+               an Fmax
   devices.svg  collide() and the devices that answer
   stages.svg   the four macro stages of a primitive test; clocks from scripts/definitions.json
   rooms.svg    folders of RTL and C++ and which may use which, from the tables of tests/arrows
-  touching.svg two bodies that cross, touch or are apart, in cross-section; relations from the table of docs/cpp/touching.md
-  touching_stays.svg right and wrong answers of the libraries; from the table of docs/cpp/touching_stays.md
+  touching.svg two bodies that cross, touch or are apart, in cross-section; relations from the table of
+  docs/cpp/touching.md touching_stays.svg right and wrong answers of the libraries; from the table of
+  docs/cpp/touching_stays.md
 
 Without an option the pictures are written; with --check nothing is written and the exit code is 1 if one is stale."""
 import html
@@ -56,7 +58,8 @@ class Picture:
         end = ' marker-end="url(#tip)"' if tip else ""
         dash = ' stroke-dasharray="5 4"' if dashed else ""
         path = " ".join(f"{x:g},{y:g}" for x, y in points)
-        self.parts.append(f'<polyline points="{path}" fill="none" stroke="{GREY}" stroke-width="1.5"{start}{end}{dash}/>')
+        self.parts.append(f'<polyline points="{path}" fill="none" stroke="{GREY}" '
+                          f'stroke-width="1.5"{start}{end}{dash}/>')
 
     def body(self, points, colours):
         """A closed polygon that lets others shine through."""
@@ -109,8 +112,10 @@ def chip():
     whole = "chip_tri" in rows or "chip" in rows
     picture.box(164, 44, 722, 464, [], ("#fbfcfd", (DONE if whole else PARTLY)[1]), dashed=True)
     picture.text(176, 64, "cchip_chip: " + ("simulated as a whole, placed and routed" if whole else
-                                            "simulated as a whole; not yet routed as a whole"), 12, GREY, anchor="start")
-    picture.box(16, 84, 124, 294, ["Host", "collide(), driver,", "images of objects,", "open pairs", "decided exactly"], DONE,
+                                            "simulated as a whole; not yet routed as a whole"), 12, GREY,
+                 anchor="start")
+    picture.box(16, 84, 124, 294, ["Host", "collide(), driver,", "images of objects,", "open pairs", "decided exactly"],
+                DONE,
                 room="cpp_ref")
     picture.box(16, 412, 124, 80, ["Board and bus", "PCI in the paper,", "AXI4 here"], PLANNED, dashed=True)
     picture.box(16, 540, 870, 52, ["Memory of a board: images, queries, records, bitstreams"], PLANNED, dashed=True)
@@ -153,7 +158,8 @@ def chip():
     picture.line((254, 492), (254, 540))
     picture.line((78, 378), (78, 412), both=True)
     picture.line((78, 492), (78, 540), both=True)
-    picture.text(20, 30, "The chip of the paper's figure 2; second lines name the paper's blocks or say what a block does", 12, GREY,
+    picture.text(20, 30, "The chip of the paper's figure 2; second lines name the paper's blocks or say what a block "
+                         "does", 12, GREY,
                  anchor="start")
     picture.key(20, 620, [(DONE, "done: tested, and placed and routed by itself", 300),
                           (PARTLY, "partly: tested, not yet routed by itself", 280), (PLANNED, "planned", 80)])
@@ -163,10 +169,13 @@ def chip():
 def devices():
     picture = Picture("collide() and its devices", 880, 452)
     picture.box(250, 16, 380, 46, ["collide(device, A, pose of A, B, pose of B)"], BLUE)
-    columns = [(16, "open_device(\"cpu\")", ["This computer", "SIMD search in two trees,", "all cores for a batch"], DONE),
+    columns = [(16, "open_device(\"cpu\")",
+                ["This computer", "SIMD search in two trees,", "all cores for a batch"], DONE),
                (236, "open_device(\"model\")", ["Model of the chip", "its integers, no clock;", "one core"], DONE),
-               (452, "open_device(\"sim\")", ["Simulated chip", "the RTL, clock by clock;", "cchip ... --device sim"], DONE),
-               (668, "open_uio_device()", ["Chip on a Linux board", "registers and memory", "through UIO; no board yet"], PLANNED)]
+               (452, "open_device(\"sim\")", ["Simulated chip", "the RTL, clock by clock;", "cchip ... --device sim"],
+                DONE),
+               (668, "open_uio_device()", ["Chip on a Linux board", "registers and memory",
+                                           "through UIO; no board yet"], PLANNED)]
     for x, call, lines, colours in columns:
         picture.text(x + 98, 106, call, 12, GREY)
         picture.box(x, 216, 196, 84, lines, colours, dashed=colours is PLANNED)
@@ -179,12 +188,15 @@ def devices():
     picture.line((114, 84), (766, 84), tip=False)
     for x, *_ in columns:
         picture.line((x + 98, 84), (x + 98, 94), tip=False)
-    picture.box(236, 128, 628, 52, ["Host of a chip", "images in its memory, many queries in flight, order of the answers"], BLUE)
+    picture.box(236, 128, 628, 52, ["Host of a chip",
+                                    "images in its memory, many queries in flight, order of the answers"], BLUE)
     picture.line((236, 154), (150, 154), (150, 216), dashed=True)
     picture.text(192, 147, "fallback", 11, GREY)
     for x, *_ in columns:
         picture.text(x + 106, 326, "open pairs", 11, GREY, anchor="start")
-    picture.box(16, 344, 848, 52, ["Exact stage, always on the host", "integers of any size for the doubles of meshes and poses: every device gives the same answer"], BLUE)
+    picture.box(16, 344, 848, 52, ["Exact stage, always on the host",
+                                   "integers of any size for the doubles of meshes and poses: every device gives the "
+                                   "same answer"], BLUE)
     picture.line((440, 396), (440, 418))
     picture.text(440, 438, "touch or not, and every pair of faces if asked for", 13)
     return picture.svg()
@@ -199,7 +211,8 @@ def clocks():
     for entry in definitions():
         if entry.get("name", "").endswith("LATENCY") or entry.get("name") == "PAIR_OVERHEAD":
             if "expr" in entry:
-                code = re.sub(r"\b((?!LEVELS|LIMBS)[A-Z][A-Z0-9_]*)\b(?!\()", lambda m: f"value({m[1]!r})", entry["expr"])
+                code = re.sub(r"\b((?!LEVELS|LIMBS)[A-Z][A-Z0-9_]*)\b(?!\()", lambda m: f"value({m[1]!r})",
+                              entry["expr"])
                 found[entry["name"]] = (entry["args"], code)
 
     def value(name, *arguments):
@@ -230,7 +243,8 @@ def stages():
     substages = value("SUBSTAGES_DEFAULT")
     parts = [("1 select", value("SELECT_LATENCY"), ["edges and", "points of", "the axis"], "cchip_sat_select"),
              ("2 axis", substages, ["edges, six products,", "the cross product L"], "cchip_sat_axis"),
-             ("3 project", substages, ["dot products of the points with L;", "error bounds beside them"], "cchip_sat_project, _bound"),
+             ("3 project", substages, ["dot products of the points with L;", "error bounds beside them"],
+              "cchip_sat_project, _bound"),
              ("4 compare", value("COMPARE_LATENCY"), ["intervals,", "signs,", "certainty"], "cchip_sat_compare")]
     total = sum(length for _, length, _, _ in parts)
     assert total == value("PIPE_LATENCY", substages)
@@ -254,7 +268,8 @@ def stages():
     picture.box(left + scale * value("RAM_LATENCY"), 190, scale * value("BOX_LATENCY"), 26, ["box compare"], PLAIN)
     picture.line((x, 114), (x + 30, 114), (x + 30, 276), (x - 40, 276))
     picture.box(left + 90, 240, x - left - 130, 72,
-                ["cchip_axis_controller", "issues one axis of some pair on every clock; the verdict decides what follows: "
+                ["cchip_axis_controller",
+                 "issues one axis of some pair on every clock; the verdict decides what follows: "
                  "the next axis of the pair or its result"], PLAIN)
     picture.line((left + 90, 276), (left - 40, 276), (left - 40, 114), tip=False)
     picture.line((left + 150, 350), (left + 150, 312))
@@ -264,7 +279,8 @@ def stages():
     beat, first = value("BEAT_LATENCY", substages), value("PAIR_LATENCY", substages, 1)
     eleven = value("PAIR_LATENCY", substages, 11)
     picture.text((left + x) / 2 + 20, 338, f"from a beat to one that depends on its verdict: {beat} clocks", 11, GREY)
-    picture.text((left + x) / 2 + 20, 354, f"a lone pair of triangles: {first} clocks for one axis, {eleven} for all eleven", 11, GREY)
+    picture.text((left + x) / 2 + 20, 354,
+                 f"a lone pair of triangles: {first} clocks for one axis, {eleven} for all eleven", 11, GREY)
     return picture.svg()
 
 
@@ -324,7 +340,8 @@ def graph(picture, uses, names, left, top, width, height):
         near = before if sweep % 2 == 0 else after
         spot = {node: (i + 0.5) / len(column) for column in columns for i, node in enumerate(column)}
         for column in order:
-            column.sort(key=lambda node: sum(spot[n] for n in near[node]) / len(near[node]) if near[node] else spot[node])
+            column.sort(key=lambda node: sum(spot[n] for n in near[node]) / len(near[node]) if near[node]
+                        else spot[node])
             spot.update({node: (i + 0.5) / len(column) for i, node in enumerate(column)})
     pitch = width / len(columns)
     box = min(80, pitch - 14)
@@ -336,7 +353,8 @@ def graph(picture, uses, names, left, top, width, height):
             x0, x1 = x0 + box / 2, x1 - box / 2
             bend = (x1 - x0) / 2
             tip, through = (' marker-end="url(#tip)"', "") if isinstance(node, str) else ("", f"h{box:.1f}")
-            picture.parts.append(f'<path d="M{x0:.1f} {y0:.1f}C{x0 + bend:.1f} {y0:.1f} {x1 - bend:.1f} {y1:.1f} {x1:.1f} {y1:.1f}{through}" '
+            picture.parts.append(f'<path d="M{x0:.1f} {y0:.1f}C{x0 + bend:.1f} {y0:.1f} {x1 - bend:.1f} {y1:.1f} '
+                                 f'{x1:.1f} {y1:.1f}{through}" '
                                  f'fill="none" stroke="{GREY}" stroke-width="1.3"{tip}/>')
     for node, (x, y) in middle.items():
         if isinstance(node, str):
@@ -347,17 +365,21 @@ def graph(picture, uses, names, left, top, width, height):
 def rooms():
     rtl, cpp = arrows()
     spec_folders = {"sim": "sim/harness", "rc": "sim/reconfig", "levels": "sim/systemc"}
-    of_lib, of_ref = ({path.name for path in (ROOT / folder / "src").iterdir() if path.is_dir()} for folder in ("lib", "cpp_ref"))
+    of_lib, of_ref = ({path.name for path in (ROOT / folder / "src").iterdir() if path.is_dir()}
+                      for folder in ("lib", "cpp_ref"))
     of_lib |= {"app", "program"}
     picture = Picture("Rooms of the house and which may use which", 1000, 620)
-    picture.text(20, 28, "rtl/: a module may instantiate modules of its own folder and of all folders from which arrows lead to it",
+    picture.text(20, 28, "rtl/: a module may instantiate modules of its own folder and of all folders from which "
+                         "arrows lead to it",
                  12, INK, "bold", "start")
     graph(picture, rtl, lambda node: BLUE, 10, 40, 980, 150)
     but = "".join(f"Exception: {room} does not use {other}. " for room, other in barred(rtl) + barred(cpp))
-    picture.text(20, 226, "lib/, cpp_ref/ and sim/: a file may include from its own room and from all rooms from which arrows lead to it",
+    picture.text(20, 226, "lib/, cpp_ref/ and sim/: a file may include from its own room and from all rooms from which "
+                          "arrows lead to it",
                  12, INK, "bold", "start")
     picture.text(20, 246, but, 12, GREY, anchor="start")
-    graph(picture, cpp, lambda node: DONE if node in of_lib else BLUE if node in of_ref | {"blocks"} else PARTLY, 10, 256, 980, 320)
+    graph(picture, cpp, lambda node: DONE if node in of_lib else BLUE if node in of_ref | {"blocks"} else PARTLY, 10,
+          256, 980, 320)
     other = ", ".join(f"{room} is {folder}" for room, folder in spec_folders.items())
     picture.key(20, 594, [(BLUE, "rtl/<room>, cpp_ref/src/<room>, cpp_ref/blocks", 310),
                           (DONE, "lib/src/<room>, lib/app, lib/program", 250),
@@ -390,7 +412,8 @@ def touching():
         ("last bit", "flush boxes, pulled off by 2^-52", "a gap of 2^-52 is a gap",
          [left], [rectangle(98, 46, 80, 48)], []),
     ]
-    rows = dict(re.findall(r"^\| ([^|]+) \| (apart|touching|crossing) \|", (ROOT / "docs" / "cpp" / "touching.md").read_text(), re.M))
+    rows = dict(re.findall(r"^\| ([^|]+) \| (apart|touching|crossing) \|",
+                           (ROOT / "docs" / "cpp" / "touching.md").read_text(), re.M))
     picture = Picture("Crossing, touching, apart", 880, 420)
     for number, (name, row, note, bodies_a, bodies_b, contacts) in enumerate(cases):
         if row not in rows:
@@ -403,14 +426,16 @@ def touching():
             picture.contact(*((x + px, y + py) for px, py in points))
         picture.text(x + 100, y + 140, f"{name}: {rows[row]}", 13, weight="bold")
         picture.text(x + 100, y + 157, note, 11, GREY)
-    picture.key(30, 404, [(BLUE, "A", 60), (PARTLY, "B", 60), ((CONTACT, CONTACT), "points in common where the surfaces meet", 280)])
+    picture.key(30, 404, [(BLUE, "A", 60), (PARTLY, "B", 60),
+                          ((CONTACT, CONTACT), "points in common where the surfaces meet", 280)])
     return picture.svg()
 
 
 def touching_stays():
     """The table of docs/cpp/touching_stays.md: for each library and place a square of three parts by three states."""
     page = (ROOT / "docs" / "cpp" / "touching_stays.md").read_text()
-    head, _, *rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in page.splitlines() if line.startswith("|")]
+    head, _, *rows = [[cell.strip() for cell in line.strip("|").split("|")]
+                      for line in page.splitlines() if line.startswith("|")]
     parts, places, states = ([*dict.fromkeys(row[column] for row in rows)] for column in (0, 1, 3))
     ways = [*dict.fromkeys(row[2] for row in rows)]
     wrong = {(*row[:4], name): cell.startswith("**") for row in rows for name, cell in zip(head[5:], row[5:])}
@@ -426,9 +451,11 @@ def touching_stays():
             for row, part in enumerate(parts):
                 for column, state in enumerate(states):
                     fill, edge = (CONTACT, CONTACT) if wrong[part, place, way, state, name] else DONE
-                    picture.body(rectangle(left + width * k + side * column, y + side * row, side - 3, side - 3), (fill, edge))
+                    picture.body(rectangle(left + width * k + side * column, y + side * row, side - 3, side - 3),
+                                 (fill, edge))
     bottom = top + step * len(places) * len(ways) + 26
-    picture.text(left, bottom, f"downwards: {', '.join(parts)}; to the right: {', '.join(states)}", 11, GREY, anchor="start")
+    picture.text(left, bottom, f"downwards: {', '.join(parts)}; to the right: {', '.join(states)}", 11, GREY,
+                 anchor="start")
     picture.key(left, bottom + 24, [(DONE, "right", 60), ((CONTACT, CONTACT), "wrong", 70)])
     return picture.svg()
 

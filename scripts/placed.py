@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Timing of a design that nextpnr-ecp5 has placed and not routed: what limits its clock, and where each block lies.
 
-nextpnr names paths only once it has routed a design, which takes hours for the whole chip. Right after placement it writes what
-a path is made of: `--write` the places of the cells, `--sdf` their delays and set-up times and the delay that it predicts for
-each wire from the distance. From these the latest arrival at every register follows, as nextpnr's own estimate has it.
+nextpnr names paths only once it has routed a design, which takes hours for the whole chip. Right after placement it
+writes what a path is made of: `--write` the places of the cells, `--sdf` their delays and set-up times and the delay
+that it predicts for each wire from the distance. From these the latest arrival at every register follows, as nextpnr's
+own estimate has it.
 
-One clock; paths from and to registers, block RAMs, multipliers and distributed RAM. Delays are those of the slowest corner."""
+One clock; paths from and to registers, block RAMs, multipliers and distributed RAM. Delays are those of the slowest
+corner."""
 import collections
 import dataclasses
 import json
@@ -91,7 +93,8 @@ class Placed:
             waits[pin] = len(sources)
             for source in sources:
                 feeds[source].append(pin)
-        # pins that no register drives (constants, the harness' inputs) have no arrival, but what follows them does not wait
+        # pins that no register drives (constants, the harness' inputs) have no arrival, but what follows them does not
+        # wait
         known = {pin for pins in feeds.values() for pin in pins} | set(launch)
         ready += [pin for pin in {*feeds, *through} if pin not in known]
         while ready:
@@ -134,8 +137,8 @@ class Placed:
 
 
 def ranking(placed, name_of, limit_ns):
-    """Sources by the slowest path that starts at each: [(path, ends behind limit_ns)]. Repaired from the top, the clock of the
-    design is that of the first row left. name_of: of a cell; the bits of a register are one source."""
+    """Sources by the slowest path that starts at each: [(path, ends behind limit_ns)]. Repaired from the top, the clock
+    of the design is that of the first row left. name_of: of a cell; the bits of a register are one source."""
     first, behind = {}, collections.Counter()
     for ns, end in placed.ends():
         path = placed.path(ns, end)
@@ -146,7 +149,8 @@ def ranking(placed, name_of, limit_ns):
 
 
 def spread(placed, block_of):
-    """{block: (cells, the middle 90 % of them in x and in y: width, height, and the middle of each)}; block_of: of a cell."""
+    """{block: (cells, the middle 90 % of them in x and in y: width, height, and the middle of each)}; block_of: of a
+    cell."""
     places = collections.defaultdict(list)
     for cell, at in placed.at.items():
         places[block_of(cell)].append(at)

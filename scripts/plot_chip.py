@@ -7,7 +7,8 @@ usage: plot_chip.py [--csv PATH | --check | --check-plot]
   --check       write nothing: compare the tables of the page with the checked-in CSV
   --check-plot  write nothing: compare the plot with one drawn from the checked-in CSV
 
-Without an option page and plot are rewritten from the checked-in CSV. Drawing needs matplotlib, installed by `make venv`.
+Without an option page and plot are rewritten from the checked-in CSV. Drawing needs matplotlib, installed by `make
+venv`.
 Exit codes: 0 done or up to date, 1 stale or no such file, 2 bad arguments, 77 no matplotlib."""
 import math
 import sys
@@ -39,7 +40,8 @@ class Run:
         self.reference = "FCL native" if "FCL native" in self.libraries else "FCL Debian"
 
     def of(self, name, memory):
-        return [row for row in self.rows if (row["class"], row["memory"]) == (name, memory) and row["meshes"] not in OUTSIDE]
+        return [row for row in self.rows if (row["class"], row["memory"]) == (name, memory)
+                and row["meshes"] not in OUTSIDE]
 
     def rate(self, name, memory, column):
         """0: the column has no answers of this class."""
@@ -55,7 +57,8 @@ def tables(run):
     ways = run.libraries + ["single", "batch"]
     first = run.memories[0]
     out += ["", f"Queries per second, geometric means of the pairs of meshes; in brackets times {run.reference}.", "",
-            "| class | " + " | ".join(run.libraries + ["CPU single", "CPU batch"] + [f"chip, {m}" for m in run.memories]) + " |",
+            "| class | " + " | ".join(run.libraries + ["CPU single", "CPU batch"]
+                                      + [f"chip, {m}" for m in run.memories]) + " |",
             "|---" * (1 + len(ways) + len(run.memories)) + "|"]
     for name in run.classes:
         reference = run.rate(name, first, run.reference)
@@ -65,10 +68,13 @@ def tables(run):
     out += ["", "Clocks that the chip needs for a query, geometric means of the pairs of meshes.", "",
             "| memory | " + " | ".join(run.classes) + " |", "|---" * (1 + len(run.classes)) + "|"]
     for memory in run.memories:
-        out.append(f"| {memory} | " + " | ".join(f"{run.rate(name, memory, 'clocks'):,.0f}" for name in run.classes) + " |")
+        out.append(f"| {memory} | " + " | ".join(f"{run.rate(name, memory, 'clocks'):,.0f}"
+                                                 for name in run.classes) + " |")
     out += ["", "What the chip's blocks do, % of its clocks, means of the pairs of meshes, memory of " + FAST + ".", "",
-            "| class | box test | bus | transform | lane | idle: a line outstanding | idle: work in flight |", "|---" * 7 + "|"]
-    out += ["| " + " | ".join([name] + [f"{run.share(name, FAST, column):.0f}" for column in SHARES]) + " |" for name in run.classes]
+            "| class | box test | bus | transform | lane | idle: a line outstanding | idle: work in flight |",
+            "|---" * 7 + "|"]
+    out += ["| " + " | ".join([name] + [f"{run.share(name, FAST, column):.0f}" for column in SHARES]) + " |"
+            for name in run.classes]
     return "\n".join(out) + "\n"
 
 
@@ -78,7 +84,8 @@ def draw(run):
     from matplotlib.ticker import FuncFormatter
     figure, axes = plt.subplots(figsize=(7.2, 4.2))
     ways = {"Coal": ("Coal", FAST, "0.55", "x", -0.3), "CPU device, one core": ("single", FAST, "#2f7fbc", "o", -0.1),
-            "chip, " + FAST: ("chip", FAST, "#08306b", "s", 0.1), "chip, 64 bit, 100 clocks": ("chip", "64 bit, 100 clocks", "#a63603", "^", 0.3)}
+            "chip, " + FAST: ("chip", FAST, "#08306b", "s", 0.1),
+            "chip, 64 bit, 100 clocks": ("chip", "64 bit, 100 clocks", "#a63603", "^", 0.3)}
     ways = {label: way for label, way in ways.items() if way[0] in run.rows[0]}
     for label, (column, memory, colour, marker, shift) in ways.items():
         for i, name in enumerate(run.classes):
@@ -99,4 +106,5 @@ def draw(run):
 
 
 if __name__ == "__main__":
-    sys.exit(page_and_plots(__doc__, PAGE, RUN, {PLOT: draw}, "scripts/run bench-chip writes build/bench/chip.csv", Run, tables))
+    sys.exit(page_and_plots(__doc__, PAGE, RUN, {PLOT: draw}, "scripts/run bench-chip writes build/bench/chip.csv",
+                            Run, tables))

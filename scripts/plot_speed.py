@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""docs/cpp/speed.md, its plot and the small one of README.md from the CSV file that collide_speed writes (scripts/run bench-collide).
+"""docs/cpp/speed.md, its plot and the small one of README.md from the CSV file that collide_speed writes (scripts/run
+bench-collide).
 
 usage: plot_speed.py [--csv PATH | --check | --check-plot]
   --csv PATH    take this run: copy it to docs/figures/collide_speed.csv, rewrite page and plots
   --check       write nothing: compare the tables of the page with the checked-in CSV
   --check-plot  write nothing: compare the plots with those drawn from the checked-in CSV
 
-Without an option page and plots are rewritten from the checked-in CSV. Drawing needs matplotlib, installed by `make venv`.
+Without an option page and plots are rewritten from the checked-in CSV. Drawing needs matplotlib, installed by `make
+venv`.
 Exit codes: 0 done or up to date, 1 stale or no such file, 2 bad arguments, 77 no matplotlib."""
 import math
 import statistics
@@ -21,13 +23,15 @@ PLOT = ROOT / "docs" / "pictures" / "collide_speed.svg"
 SMALL = ROOT / "docs" / "pictures" / "collide_speed_small.svg"  # for README.md
 ASSUMED_GAIN = 2.3  # collide_speed.cpp has the same
 # ratios that the project aims at, of the means that count: classes -> variant -> ratio
-AIMS = {("touch", "near", "deep"): {"single": 10, "batch": 15}, ("touch all", "deep all"): {"single": 8}, ("lone",): {"single": 5}, ("far",): {"single": 4}}
+AIMS = {("touch", "near", "deep"): {"single": 10, "batch": 15}, ("touch all", "deep all"): {"single": 8},
+        ("lone",): {"single": 5}, ("far",): {"single": 4}}
 BOOLEAN = ("touch", "near", "deep", "far", "graze")
 # rows of the tables of means: classes, title
 MEANS = [((name,), name) for name in BOOLEAN] + [
     (("touch", "near", "deep"), "**touch, near and deep**"), (("touch all",), "touch, all contacts"),
     (("deep all",), "deep, all contacts"), (("touch all", "deep all"), "**all contacts**"),
-    (("coherent",), "coherent"), (("lone",), "lone"), (("touch warm",), "touch, warm"), (("touch cold",), "touch, cold")]
+    (("coherent",), "coherent"), (("lone",), "lone"), (("touch warm",), "touch, warm"),
+    (("touch cold",), "touch, cold")]
 LIBRARIES = ("FCL Debian", "FCL native", "Coal", "CGAL", "ODE")  # one that is not in the run has no column
 
 
@@ -55,7 +59,8 @@ class Run:
 
     def differ(self, names, variant):
         """Answers that are not ours, over all meshes; None if the variant gave none."""
-        counts = [int(cell[variant]["differ"]) for (_, name), cell in self.cells.items() if name in names and variant in cell]
+        counts = [int(cell[variant]["differ"]) for (_, name), cell in self.cells.items() if name in names
+                  and variant in cell]
         return sum(counts) if counts else None
 
     def answers(self, names):
@@ -83,7 +88,8 @@ def tables(run):
         out.append(f"- {key}: {value}")
     out += ["", "The rows of every pair of meshes, with counts of nodes, boxes and pairs of faces, are in",
             "[collide_speed.csv](../figures/collide_speed.csv)."]
-    out += ["", "### Geometric means of the six pairs", "", "Times FCL built natively; in brackets what this project aims at.", "",
+    out += ["", "### Geometric means of the six pairs", "",
+            "Times FCL built natively; in brackets what this project aims at.", "",
             "| class | single | batch | all cores |", "|---|---|---|---|"]
     for names, title in means_of_run:
         aims = AIMS.get(names, {})
@@ -92,7 +98,8 @@ def tables(run):
         out.append(f"| {title} | " + " | ".join(cells) + " |")
     libraries = [name for name in LIBRARIES if name in run.variants]
     out += ["", "### Other libraries", "",
-            "How many times faster our single query is, geometric means of the six pairs; in brackets how many of the answers, which",
+            "How many times faster our single query is, geometric means of the six pairs; in brackets how many of the "
+            "answers, which",
             "include those about *body-tiny*, are not the exact ones.", "",
             "| class | answers | " + " | ".join(libraries) + " |", "|---" * (len(libraries) + 2) + "|"]
     for names, title in means_of_run:
@@ -102,19 +109,22 @@ def tables(run):
         out.append(f"| {title} | {run.answers(names):,} | " + " | ".join(cells) + " |")
     if "relation" in run.variants:
         out += ["", "### Touching or crossing", "",
-                "What it costs to ask for the [relation](touching.md), too: seconds of a single query, times those without.", "",
+                "What it costs to ask for the [relation](touching.md), too: seconds of a single query, times those "
+                "without.", "",
                 "| " + " | ".join(title for _, title in MEANS[:9]) + " |", "|---" * 9 + "|"]
         costs = [run.mean(names, "single") / run.mean(names, "relation") if run.mean(names, "relation") else None
                  for names, _ in MEANS[:9]]
         out.append("| " + " | ".join("-" if cost is None else f"{cost:.2f}" for cost in costs) + " |")
-    out += ["", "### Instruction sets", "", "Single query, batch on one thread; times FCL built natively, geometric means.", "",
+    out += ["", "### Instruction sets", "",
+            "Single query, batch on one thread; times FCL built natively, geometric means.", "",
             "| | " + " | ".join(BOOLEAN) + " |", "|---" * (len(BOOLEAN) + 1) + "|"]
     for i, target in enumerate(run.notes["instruction sets"].split(", ")):
         suffix = "" if i == 0 else f" {target}"
         cells = [f"{times(run.mean((name,), 'single' + suffix))}, {times(run.mean((name,), 'batch' + suffix))}"
                  for name in BOOLEAN]
         out.append(f"| {target} | " + " | ".join(cells) + " |")
-    out += ["", "### Objects", "", "Memory and build time, mesh and what the device derives from it included; least, median and greatest object.", "",
+    out += ["", "### Objects", "", "Memory and build time, mesh and what the device derives from it included; least, "
+                                   "median and greatest object.", "",
             "| | bytes a face | microseconds a face |", "|---|---|---|"]
     for variant in ("ours", "FCL Debian"):
         rows = [row for row in run.rows if row["table"] == "object" and row["variant"] == variant]
@@ -143,7 +153,8 @@ def draw(run):
                       label=variant if i == 0 else None)
             mean = math.exp(sum(map(math.log, values)) / len(values))
             axes.plot([i + shift - 0.1, i + shift + 0.1], [mean, mean], color=colour, linewidth=2.2)
-            axes.annotate(f"{mean:.1f}", (i + shift, max(values)), xytext=(0, 5), textcoords="offset points", ha="center",
+            axes.annotate(f"{mean:.1f}", (i + shift, max(values)), xytext=(0, 5), textcoords="offset points",
+                          ha="center",
                           fontsize=8, color=colour)
     axes.axhline(1, color="0.45", linewidth=0.9, linestyle=":")
     axes.annotate("FCL", (len(classes) - 0.55, 1), xytext=(0, 3), textcoords="offset points", ha="right", fontsize=8,
@@ -174,7 +185,8 @@ def draw_small(run):
         axes.annotate(f"{mean:.1f}", (i, 1), xytext=(0, 14), textcoords="offset points", ha="center", fontsize=15,
                       fontweight="bold", color="#08306b")
     axes.axhline(1, color="0.3", linewidth=1.1, linestyle="--")
-    axes.annotate("FCL = 1", (len(classes) + 0.03, 1), xytext=(0, 4), textcoords="offset points", ha="right", fontsize=9,
+    axes.annotate("FCL = 1", (len(classes) + 0.03, 1), xytext=(0, 4), textcoords="offset points",
+                  ha="right", fontsize=9,
                   color="0.2")
     axes.set_xticks(range(len(classes)), list(classes))
     axes.set_xlim(-0.5, len(classes) + 0.05)

@@ -32,7 +32,8 @@ def run(program):
     with tempfile.TemporaryDirectory() as folder:
         curves = pathlib.Path(folder, "curves.csv")
         try:
-            result = subprocess.run([program, "--csv", curves], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            result = subprocess.run([program, "--csv", curves], stdout=subprocess.PIPE,
+                                    stderr=subprocess.PIPE, text=True)
         except OSError as error:
             fail(f"{program} cannot be run ({error.strerror}); build it with: scripts/run table1")
         if result.returncode:
@@ -51,7 +52,8 @@ def summary(text):
 
 
 def draw(curves, table):
-    """The plot as SVG text, the same bytes for the same figures. Dark to light and solid or dashed: readable in grey."""
+    """The plot as SVG text, the same bytes for the same figures. Dark to light and solid or dashed: readable in
+    grey."""
     plt = start_plot("cchip_table1")
     from matplotlib.lines import Line2D
     from matplotlib.ticker import FuncFormatter

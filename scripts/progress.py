@@ -59,5 +59,6 @@ class Progress:
             return
         fraction = min(self.done / self.total, 1)
         left = f", {duration((time.monotonic() - self.start) * (1 - fraction) / fraction)} left" if fraction > 0 else ""
-        print(f"\r\x1b[K[{'#' * int(40 * fraction):<40}] {100 * fraction:3.0f} %  {self.done} of {self.total} {self.unit}{left}",
+        print(f"\r\x1b[K[{'#' * int(40 * fraction):<40}] {100 * fraction:3.0f} %  {self.done} of {self.total} "
+              f"{self.unit}{left}",
               end="", file=self.out, flush=True)

@@ -14,7 +14,8 @@ from generated_page import ROOT, notes_and_rows, page_and_plots
 
 PAGE = ROOT / "docs" / "cpp" / "speed.md"
 RUN = ROOT / "docs" / "figures" / "robot_speed.csv"
-VARIANTS = ("single", "batch", "FCL Debian", "FCL native", "Coal", "CGAL", "ODE")  # one that is not in the run has no row
+# one that is not in the run has no row
+VARIANTS = ("single", "batch", "FCL Debian", "FCL native", "Coal", "CGAL", "ODE")
 ARMS = {"panda": "Panda", "ur3": "UR3", "ur5": "UR5", "ur10": "UR10"}
 
 
@@ -45,4 +46,5 @@ def table(text):
 
 
 if __name__ == "__main__":
-    sys.exit(page_and_plots(__doc__, PAGE, RUN, {}, "scripts/run bench-robot writes build/bench/robot.csv", str, table, "robot"))
+    sys.exit(page_and_plots(__doc__, PAGE, RUN, {}, "scripts/run bench-robot writes build/bench/robot.csv", str,
+                            table, "robot"))

@@ -5,8 +5,8 @@
 usage: scripts/screenshot.py gtkwave [FOLDER]         docs/pictures/gtkwave.png from build/waves (after make sim)
        scripts/screenshot.py readme FILE.png          README.md as the site would show it; needs make docs, once
 
-The first needs xvfb, xauth, gtkwave and imagemagick (scripts/bootstrap --dev); the second imagemagick and Debian's chromium, which
-bootstrap does not install: apt-get install chromium.
+The first needs xvfb, xauth, gtkwave and imagemagick (scripts/bootstrap --dev); the second imagemagick and Debian's
+chromium, which bootstrap does not install: apt-get install chromium.
 Exit codes: 0 done, 1 something is missing or failed, 2 wrong command line.
 """
 import argparse
@@ -47,7 +47,8 @@ def panel_layout(text, groups, start):
     lines = text.split("\n")
     first = lines.index("@800200")
     kept = [line for line in lines[:first] if not re.match(r"@200|-data|\*|\[(size|timestart|signals_width)", line)]
-    head = [f"[timestart] {start}", f"[size] {WIDTH} {HEIGHT}", f"*{ZOOM:.6f} {start}" + " -1" * 26, "[signals_width] 230"]
+    head = [f"[timestart] {start}", f"[size] {WIDTH} {HEIGHT}", f"*{ZOOM:.6f} {start}" + " -1" * 26,
+            "[signals_width] 230"]
     kept[3:3] = head
     for group in groups:
         begin = next(i for i, line in enumerate(lines) if line == "-" + group and lines[i - 1] == "@800200")
@@ -106,20 +107,23 @@ def gtkwave(folder):
             # The names of codes are found by their absolute paths: the saved place must be the real one.
             cut.write_text(re.sub(r'^\[savefile\].*$', f'[savefile] "{cut}"', text, flags=re.M))
             whole = pathlib.Path(scratch) / f"window{i}.png"
-            whole.write_bytes(window(["gtkwave", "--rcvar", "splash_disable on", "--rcvar", "hide_sst on", str(wave), str(cut)]))
+            whole.write_bytes(
+                window(["gtkwave", "--rcvar", "splash_disable on", "--rcvar", "hide_sst on", str(wave), str(cut)]))
             part = pathlib.Path(scratch) / f"part{i}.png"
             bottom = FIRST_ROW + ROW * len(shown) - TOP - 6
             subprocess.run(["convert", whole, *draw_marks(start, marks, shown, left_of_waves(whole)), "-crop",
                             f"{WIDTH - LEFT - 16}x{bottom}+{LEFT}+{TOP}", "+repage", part], check=True)
             parts.append(part)
-        subprocess.run(["convert", *parts, "-background", "white", "-splice", "0x8", "-append", "-colors", "64", "-strip",
+        subprocess.run(["convert", *parts, "-background", "white", "-splice", "0x8", "-append", "-colors",
+                        "64", "-strip",
                         f"PNG8:{PICTURE}"], check=True)
     print(f"wrote {PICTURE.relative_to(ROOT)}, {PICTURE.stat().st_size // 1000} kB")
 
 
 def left_of_waves(picture):
     """Left edge of the black area: the first column that is dark from the first row to the last."""
-    shade = subprocess.run(["convert", picture, "-crop", f"{WIDTH}x{HEIGHT - FIRST_ROW - 60}+0+{FIRST_ROW}", "+repage", "-resize", f"{WIDTH}x1!",
+    shade = subprocess.run(["convert", picture, "-crop", f"{WIDTH}x{HEIGHT - FIRST_ROW - 60}+0+{FIRST_ROW}", "+repage",
+                            "-resize", f"{WIDTH}x1!",
                             "-depth", "8", "gray:-"], check=True, stdout=subprocess.PIPE).stdout
     return next(x for x in range(len(shade) - 50) if max(shade[x + 2:x + 50]) < 90)
 
@@ -137,10 +141,13 @@ def readme(picture):
         # The links to other pages lead nowhere here, so this build is not strict; make docs checks links.
         (root / "mkdocs.yml").write_text("site_name: collisionchip\ntheme: {name: readthedocs, highlightjs: false}\n"
                                          "use_directory_urls: false\nplugins: []\n")
-        subprocess.run([mkdocs, "build", "--quiet", "--config-file", root / "mkdocs.yml"], check=True, stderr=subprocess.DEVNULL)
+        subprocess.run([mkdocs, "build", "--quiet", "--config-file", root / "mkdocs.yml"], check=True,
+                       stderr=subprocess.DEVNULL)
         shot = root / "page.png"
-        subprocess.run(["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", f"--user-data-dir={root / 'profile'}",
-                        "--window-size=1300,3600", f"--screenshot={shot}", f"file://{root / 'site' / 'index.html'}"], check=True, timeout=120,
+        subprocess.run(["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars",
+                        f"--user-data-dir={root / 'profile'}",
+                        "--window-size=1300,3600", f"--screenshot={shot}", f"file://{root / 'site' / 'index.html'}"],
+                       check=True, timeout=120,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         subprocess.run(["convert", shot, "-trim", "+repage", picture], check=True)
     print(f"wrote {picture}")

@@ -30,7 +30,8 @@ def subcommands(text):
 
 
 def options(text):
-    """Name of each option: the action of compgen for its value, such as "-f" for files, or None if it takes no value."""
+    """Name of each option: the action of compgen for its value, such as "-f" for files, or None if it takes no
+    value."""
     found = {}
     for names, rest in re.findall(r"^  (-[^ ]+)(.*\n(?:   .*\n)*)", section(text, "Options"), re.M):
         choices = re.match(r" [A-Z]+:\{(.*?)\}", rest)
@@ -47,7 +48,8 @@ def options(text):
 def completion(program):
     top = help_of(program, "--help")
     commands = subcommands(top)
-    lines = ["# SPDX-License-Identifier: Apache-2.0", "# Completion of cchip for bash, made from what cchip --help prints.",
+    lines = ["# SPDX-License-Identifier: Apache-2.0",
+             "# Completion of cchip for bash, made from what cchip --help prints.",
              "_cchip() {",
              "  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} command='' i",
              "  COMPREPLY=()",
@@ -57,7 +59,8 @@ def completion(program):
              "  local options=''",
              '  case "$command" in',
              f'    "") COMPREPLY=($(compgen -W "{" ".join([*commands, *options(top)])}" -- "$word")); return ;;',
-             f'    help) COMPREPLY=($(compgen -W "{" ".join(name for name in commands if name not in OWN)}" -- "$word")); return ;;']
+             f'    help) COMPREPLY=($(compgen -W "{" ".join(name for name in commands if name not in OWN)}" -- '
+             '"$word")); return ;;']
     for name in commands:
         if name == "help":
             continue
@@ -65,7 +68,8 @@ def completion(program):
         lines.append(f"    {name})")
         lines.append(f'      options="{" ".join(found)}"')
         lines.append('      case "$before" in')
-        lines += [f'        {option}) COMPREPLY=($(compgen {action} -- "$word")); return ;;' for option, action in found.items() if action]
+        lines += [f'        {option}) COMPREPLY=($(compgen {action} -- "$word")); return ;;'
+                  for option, action in found.items() if action]
         lines += ["      esac ;;"]
     lines += ["  esac",
               '  if [[ $word == -* ]]; then',
@@ -101,8 +105,10 @@ def man_page(help2man, name, text, about, version, folder):
         program = pages / name
         program.write_text(f"#!/bin/sh\ncat {shlex.quote(str(pages / 'help'))}\n")
         program.chmod(0o755)
-        subprocess.run([help2man, "--no-info", "--section=1", "--no-discard-stderr", f"--name={about}", f"--version-string={version}",
-                        "--source=collisionchip", "--manual=collisionchip", f"--output={folder / name}.1", program], check=True)
+        subprocess.run([help2man, "--no-info", "--section=1", "--no-discard-stderr", f"--name={about}",
+                        f"--version-string={version}",
+                        "--source=collisionchip", "--manual=collisionchip", f"--output={folder / name}.1", program],
+                       check=True)
 
 
 def main():
@@ -119,10 +125,12 @@ def main():
         return
     top = help_of(program, "--help")
     version = help_of(program, "--version").split()[-1]
-    man_page(chosen.help2man, "cchip", top, "exact collision detection, by a library or on simulated hardware", version, chosen.folder / "man")
+    man_page(chosen.help2man, "cchip", top, "exact collision detection, by a library or on simulated hardware", version,
+             chosen.folder / "man")
     for name, about in subcommands(top).items():
         if name not in OWN:
-            man_page(chosen.help2man, f"cchip-{name}", help_of(program, name, "--help"), about, version, chosen.folder / "man")
+            man_page(chosen.help2man, f"cchip-{name}", help_of(program, name, "--help"), about, version,
+                     chosen.folder / "man")
 
 
 if __name__ == "__main__":

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """What mkdocs.yml adds to MkDocs (make docs):
 
-- Every module of the RTL has a page modules/MODULE.md, which scripts/datasheet.py builds. A link to the file of a module leads to it.
-- The navigation is docs/README.md: a tab for each of its headings, in it the pages that the tables below link to, in this order. Rows
-  whose first cell names a folder (datasheets) are grouped by it.
+- Every module of the RTL has a page modules/MODULE.md, which scripts/datasheet.py builds. A link to the file of a
+  module leads to it.
+- The navigation is docs/README.md: a tab for each of its headings, in it the pages that the tables below link to, in
+  this order. Rows whose first cell names a folder (datasheets) are grouped by it.
 - The title of a page is its first heading; MkDocs takes it from the file's name if a comment (SPDX) precedes it.
 - A heading gets the anchor that GitHub gives it, which is the one that the pages link to.
-- A link to a file or folder outside docs/ leads to it in the checkout that holds build/site; a missing one is a warning, so
-  that the strict build fails.
+- A link to a file or folder outside docs/ leads to it in the checkout that holds build/site; a missing one is a
+  warning, so that the strict build fails.
 - Long names in tables may break after _ and the like; drawings of text get the class `drawing` (docs/site.css)."""
 import logging
 import os
@@ -82,7 +83,9 @@ def breakable(code):
 
 
 def on_page_content(html, page, config, **_):
-    html = re.sub(r"<td\b.*?</td>", lambda cell: re.sub(r"(?<=<code>)[^<]+(?=</code>)", breakable, cell[0]), html, flags=re.S)
-    html = re.sub(r"<pre>(.*?)</pre>", lambda pre: f'<pre class="drawing">{pre[1]}</pre>' if DRAWING.search(pre[1]) else pre[0], html, flags=re.S)
+    html = re.sub(r"<td\b.*?</td>", lambda cell: re.sub(r"(?<=<code>)[^<]+(?=</code>)", breakable, cell[0]),
+                  html, flags=re.S)
+    html = re.sub(r"<pre>(.*?)</pre>", lambda pre: f'<pre class="drawing">{pre[1]}</pre>' if DRAWING.search(pre[1])
+                  else pre[0], html, flags=re.S)
     folder = (pathlib.Path(config.site_dir) / page.url).parent
     return re.sub('"repository:([^"#]*)', lambda link: f'"{os.path.relpath(ROOT / link[1], folder)}', html)

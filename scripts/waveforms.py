@@ -11,9 +11,9 @@ usage: waveforms.py [--check] [--programs FOLDER] [NAME...]
   swap    a swap by cchip_config_controller in a simulated slot
   query   a query through cchip_chip; a column is 100 clocks, values are numbers of events
 
-Runs scripts/waves/NAME.v with Icarus Verilog (command: IVERILOG) and reads the signals of its top from the clock on which its
-`show` is 1. A column is what a rising edge of clk sees; columns in which nothing changes are left out, with a gap for them.
-With --check nothing is written, and the exit code is 1 if a file is stale."""
+Runs scripts/waves/NAME.v with Icarus Verilog (command: IVERILOG) and reads the signals of its top from the clock on
+which its `show` is 1. A column is what a rising edge of clk sees; columns in which nothing changes are left out, with a
+gap for them. With --check nothing is written, and the exit code is 1 if a file is stale."""
 import argparse
 import json
 import os
@@ -36,7 +36,8 @@ WAVES = {
     "pair": ("Two pairs into the triangle test, their results out", [
         "idle",
         ["s_pair", "s_pair_valid", "s_pair_ready", "s_pair_tag while s_pair_valid"],
-        ["m_result", "m_result_valid", "m_result_ready", "m_result_tag while m_result_valid", "m_result_hit while m_result_valid",
+        ["m_result", "m_result_valid", "m_result_ready", "m_result_tag while m_result_valid",
+         "m_result_hit while m_result_valid",
          "m_result_definite while m_result_valid", "m_result_beats while m_result_valid"]]),
     "cache": ("One line, asked for three times: miss, wait, hit", [
         ["s", "s_valid", "s_place while s_valid", "s_line while s_valid"],
@@ -53,7 +54,8 @@ WAVES = {
         ["s_swap", "s_swap_valid", "s_swap_ready", "s_swap_module while s_swap_valid as ModuleId"],
         "phase as SwapPhase",
         ["memory", "m_axi_arvalid", "m_axi_rvalid"],
-        ["slot", "stop", "quiet", "decouple", "decoupled", "hold_reset", "roc_start", "roc_busy", "region_rm_id while coupled as ModuleId"],
+        ["slot", "stop", "quiet", "decouple", "decoupled", "hold_reset", "roc_start", "roc_busy",
+         "region_rm_id while coupled as ModuleId"],
         ["port", "cfg_valid"],
         ["m_report", "m_report_valid", "m_report_code while m_report_valid as SwapCode"]]),
     "query": ("A query: events in each 100 clocks from the doorbell on", [
@@ -77,9 +79,11 @@ def simulate(name, programs):
             if not vectors.exists():
                 raise SystemExit(f"waveforms.py: no {vectors}, run: make build")
             subprocess.run([vectors, "memory.hex", "records.hex"], cwd=folder, check=True)
-        for command in ([os.environ.get("IVERILOG") or "iverilog", "-g2005", "-I", ROOT / "rtl/include", "-s", "bench", "-o", program,
+        for command in ([os.environ.get("IVERILOG") or "iverilog", "-g2005", "-I", ROOT / "rtl/include", "-s", "bench",
+                         "-o", program,
                          ROOT / f"scripts/waves/{name}.v", *more, *files], ["vvp", "-n", program, *plusargs]):
-            result = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=100)
+            result = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                    timeout=100)
             if result.returncode or "ASSERT failed" in result.stdout:
                 raise SystemExit(f"waveforms.py: {name}.v: {command[0]} says\n{result.stdout}")
         return (pathlib.Path(folder) / "dump.vcd").read_text()
@@ -229,7 +233,8 @@ def drawn(text):
         middle = (edges[column] + edges[column + 1]) / 2
         picture.text(middle, TOP - 10, "..." if gaps[column] else label, 10, GREY)
         if gaps[column]:
-            picture.parts.append(f'<rect x="{edges[column]:g}" y="{TOP - 4}" width="{GAP}" height="{height - TOP - 4:g}" fill="{PALE}"/>')
+            picture.parts.append(f'<rect x="{edges[column]:g}" y="{TOP - 4}" width="{GAP}" '
+                                 f'height="{height - TOP - 4:g}" fill="{PALE}"/>')
     y = TOP
     for group, row in rows:
         if row is None or not row:
@@ -244,7 +249,8 @@ def drawn(text):
                 points = [(x, low)]
                 for column in range(begin, end):
                     middle = (edges[column] + edges[column + 1]) / 2
-                    points += [] if gaps[column] else [(edges[column], low), (edges[column], top), (middle, top), (middle, low)]
+                    points += [] if gaps[column] else [(edges[column], low), (edges[column], top), (middle, top),
+                                                       (middle, low)]
                 picture.line(*points, (right, low), tip=False)
             elif sign in "01":
                 fresh = top if sign == "1" else low
@@ -252,7 +258,8 @@ def drawn(text):
                 level = fresh
             else:
                 fill = PALE if sign == "x" else BLUE[0]
-                picture.parts.append(f'<rect x="{x:g}" y="{top:g}" width="{right - x:g}" height="{low - top:g}" fill="{fill}" '
+                picture.parts.append(f'<rect x="{x:g}" y="{top:g}" width="{right - x:g}" height="{low - top:g}" '
+                                     f'fill="{fill}" '
                                      f'stroke="{GREY}" stroke-width="{0.5 if sign == "x" else 1.5}"/>')
                 if words:
                     picture.text((x + right) / 2, low - 4, words, 11)
@@ -261,7 +268,8 @@ def drawn(text):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter, usage=argparse.SUPPRESS)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
+                                     usage=argparse.SUPPRESS)
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--programs", default=ROOT / "build/release/bin")
     parser.add_argument("names", nargs="*", choices=[[], *WAVES], metavar="NAME")

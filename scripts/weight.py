@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What there is to inherit: lines of each room and words of the pages, of the working tree or of a commit. Words by hand are
-those outside pages and blocks that a script writes.
+"""What there is to inherit: lines of each room and words of the pages, of the working tree or of a commit. Words by
+hand are those outside pages and blocks that a script writes.
 
 usage: weight.py [COMMIT]   (a second column with the change since COMMIT)"""
 import pathlib
@@ -10,12 +10,16 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-CODE = re.compile(r"\.(cpp|hpp|v|vh|py|sh|cmake|c|h|mk|in|html|tcl|rdl|json)$|(^|/)(CMakeLists\.txt|Makefile|lint|bootstrap|run)$")
+CODE = re.compile(
+    r"\.(cpp|hpp|v|vh|py|sh|cmake|c|h|mk|in|html|tcl|rdl|json)$|(^|/)(CMakeLists\.txt|Makefile|lint|bootstrap|run)$")
 # Room: the files that belong to it, the first that fits; generated files are none of it.
-GENERATED = re.compile(r"internal/wire/(definitions|registers|chip_registers)\.hpp$|^rtl/include/.*\.vh$|^rtl/regs/|^docs/figures/")
-ROOMS = [("rtl", r"^rtl/"), ("command", r"^(lib/app|lib/program|sim/app)/"), ("python", r"^(lib/)?python/(src|collisionchip)/|^(lib/)?python/[^/]*$"),
+GENERATED = re.compile(
+    r"internal/wire/(definitions|registers|chip_registers)\.hpp$|^rtl/include/.*\.vh$|^rtl/regs/|^docs/figures/")
+ROOMS = [("rtl", r"^rtl/"), ("command", r"^(lib/app|lib/program|sim/app)/"),
+         ("python", r"^(lib/)?python/(src|collisionchip)/|^(lib/)?python/[^/]*$"),
          ("tests", r"^(tests|(lib/)?python/tests)/"), ("examples", r"^(examples|(lib/)?python/examples)/"),
-         ("library", r"^(lib/|cpp_ref/(include/cchip|src)/(cpu|collide|mesh|mesh_io|certificate|geometry|device|exact|bvh)/|cpp_ref/include/cchip/internal/(exact|bvh|collide|geometry|certificate)/)"), ("models and host", r"^cpp_ref/"),
+         ("library",
+          r"^(lib/|cpp_ref/(include/cchip|src)/(cpu|collide|mesh|mesh_io|certificate|geometry|device|exact|bvh)/|cpp_ref/include/cchip/internal/(exact|bvh|collide|geometry|certificate)/)"), ("models and host", r"^cpp_ref/"),
          ("simulation", r"^sim/"), ("bench", r"^bench/"),
          ("scripts", r"^(scripts|workflow|cmake|\.ci)/|^(Makefile|CMakeLists\.txt)$")]
 # Pages that a script writes whole, and blocks in others.
@@ -27,7 +31,8 @@ PRODUCT = ("rtl", "library", "models and host", "command", "python")
 def contents(commit):
     """Name and text of each file that git has."""
     if commit is None:
-        names = subprocess.run(["git", "ls-files"], cwd=ROOT, check=True, capture_output=True, text=True).stdout.split("\n")
+        names = subprocess.run(["git", "ls-files"], cwd=ROOT, check=True, capture_output=True,
+                               text=True).stdout.split("\n")
         for name in filter(None, names):
             path = ROOT / name
             if path.is_file() and not path.is_symlink():
@@ -35,7 +40,8 @@ def contents(commit):
         return
     names = subprocess.run(["git", "ls-tree", "-r", "--name-only", commit], cwd=ROOT, check=True, capture_output=True,
                            text=True).stdout.split("\n")
-    with subprocess.Popen(["git", "cat-file", "--batch"], cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as git:
+    with subprocess.Popen(["git", "cat-file", "--batch"], cwd=ROOT, stdin=subprocess.PIPE,
+                          stdout=subprocess.PIPE) as git:
         for name in filter(None, names):
             git.stdin.write(f"{commit}:{name}\n".encode())
             git.stdin.flush()

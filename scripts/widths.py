@@ -3,19 +3,20 @@
 """Bounds of every sum, difference, product, negation and shift of the arithmetic RTL, from the ranges of its inputs.
 
 usage: widths.py [--check | --write] [--module MODULE]... [--one-bit-less]
-  --check         compare with docs/develop/widths.md and fail at a place without a proof or a reason (the lint check `narrowing`)
+  --check         compare with docs/develop/widths.md and fail at a place without a proof or a reason (the lint check
+                  `narrowing`)
   --write         write that page
   --module        only this module, with a table on standard output
   --one-bit-less  how many words the bound would refuse with one bit less than they have
 
 Yosys elaborates a module with its parameters into words; this script carries an interval through them, every corner of
-every product. A place is where bits could be lost: a result that is stored in fewer bits than its operands could need, or a
-slice that leaves out high bits of a result. It is proved if the interval fits. Where it is not, REASONS below says why no
-bit that counts is lost and what shows it; a reason that is not needed any more is an error, too.
+every product. A place is where bits could be lost: a result that is stored in fewer bits than its operands could need,
+or a slice that leaves out high bits of a result. It is proved if the interval fits. Where it is not, REASONS below says
+why no bit that counts is lost and what shows it; a reason that is not needed any more is an error, too.
 
-Inputs have their legal range, both ends included (docs/hardware/image.md, docs/hardware/definitions.md); a register holds
-what was written to it; what a loop of registers holds is any number of its width. Exit codes: 0 all proved or with a
-reason, 1 not, 2 wrong arguments."""
+Inputs have their legal range, both ends included (docs/hardware/image.md, docs/hardware/definitions.md); a register
+holds what was written to it; what a loop of registers holds is any number of its width. Exit codes: 0 all proved or
+with a reason, 1 not, 2 wrong arguments."""
 import argparse
 import json
 import pathlib
@@ -49,7 +50,8 @@ def row(port, width, count, interval, first=0):
     return [(port, first + width * i, width, interval) for i in range(count)]
 
 
-DEFAULTS = {"PASSES": 1, "COORD_W": 16, "ABSOLUTE_PROJECTION": 0, "PROJ_W": 51, "BOUND_W": 43, "VERTS_A": 3, "VERTS_B": 3}
+DEFAULTS = {"PASSES": 1, "COORD_W": 16, "ABSOLUTE_PROJECTION": 0, "PROJ_W": 51, "BOUND_W": 43, "VERTS_A": 3,
+            "VERTS_B": 3}
 BOX = signed(7)
 ONE17 = (-(1 << 17), 1 << 17)
 ONE30 = (-(1 << 30), 1 << 30)
@@ -64,8 +66,8 @@ def children(port):
     return row(port, 7, 6, BOX) + row(port, 3, 20, unsigned(3), 42)
 
 
-# Module, parameters, and fields of ports with their legal ranges; a port that is not named holds any number of its width,
-# without a sign.
+# Module, parameters, and fields of ports with their legal ranges; a port that is not named holds any number of its
+# width, without a sign.
 TARGETS = [
     ("cchip_bv_lane_a", {}, children("child") + row("pose_m", 19, 9, ONE17) + row("pose_magnitude", 10, 39, (0, 1023))
      + row("offset", 17, 3, signed(17))),
@@ -80,15 +82,18 @@ TARGETS = [
 # The error of a vertex of A is at most 2^15 + 66 units (docs/hardware/image.md, "How great eta is").
 NORMALISER = row("s_a", 45, 3, signed(45)) + row("s_b", 25, 3, signed(25)) + [("s_error_a", 0, 16, (0, (1 << 15) + 66))]
 for passes in (1, 2):
-    lines = [field for base in (0, 512) for field in row("s_lines", 24, 3, signed(24), base) + [("s_lines", base + 72, 5, (0, 24))]]
-    TARGETS.append(("cchip_vertex_transform", {"PASSES": passes}, row("s_m", 32, 9, ONE30) + row("s_t", 36, 3, signed(36)) + lines))
+    lines = [field for base in (0, 512)
+             for field in row("s_lines", 24, 3, signed(24), base) + [("s_lines", base + 72, 5, (0, 24))]]
+    TARGETS.append(("cchip_vertex_transform", {"PASSES": passes},
+                    row("s_m", 32, 9, ONE30) + row("s_t", 36, 3, signed(36)) + lines))
     TARGETS.append(("cchip_normaliser", {"PASSES": passes}, NORMALISER))
 for w in (4, 20):
     TARGETS.append(("cchip_normaliser", {"COORD_W": w}, NORMALISER))
 for w in (4, 16, 17, 18, 20):
     axis = [("s_axis", (2 * w + 2) * d, 2 * w + 2, (-2 * edge(w) ** 2, 2 * edge(w) ** 2)) for d in range(3)]
     norm = [("s_edge_norm", 0, w + 3, (0, 6 * edge(w))), ("s_error_shift", 0, 3, (0, 4))]
-    TARGETS.append(("cchip_sat_axis", {"COORD_W": w}, [f for port in ("s_e_from", "s_e_to", "s_f_from", "s_f_to") for f in row(port, w, 3, signed(w))]))
+    TARGETS.append(("cchip_sat_axis", {"COORD_W": w},
+                    [f for port in ("s_e_from", "s_e_to", "s_f_from", "s_f_to") for f in row(port, w, 3, signed(w))]))
     for absolute in (0, 1):
         TARGETS.append(("cchip_sat_project", {"COORD_W": w, "ABSOLUTE_PROJECTION": absolute},
                         axis + norm + row("s_reference", w, 3, signed(w)) + row("s_points", w, 9, signed(w))))
@@ -96,39 +101,47 @@ for w in (4, 16, 17, 18, 20):
                     row("s_projection", 3 * w + 3, 3, (-4 * edge(w) ** 3, 4 * edge(w) ** 3))))
     for a, b in ((3, 3), (3, 4), (4, 4)):
         TARGETS.append(("cchip_box_compare", {"COORD_W": w, "VERTS_A": a, "VERTS_B": b},
-                        row("s_a", w, 3 * a, signed(w)) + row("s_b", w, 3 * b, signed(w)) + [("s_error_shift", 0, 3, (0, 4))]))
+                        row("s_a", w, 3 * a, signed(w)) + row("s_b", w, 3 * b, signed(w))
+                        + [("s_error_shift", 0, 3, (0, 4))]))
 
-# (module, word) -> least and greatest number that the legal inputs leave of a word, where each input by itself would leave
-# more, and why. A word is named by its net or the register that takes it, else by its expression.
+# (module, word) -> least and greatest number that the legal inputs leave of a word, where each input by itself would
+# leave more, and why. A word is named by its net or the register that takes it, else by its expression.
 LIMITS = {
     ("cchip_bv_lane_a", "gen_box[].size"): lambda p: (0, 127, "cchip_node_check refuses a node with an inverted box"),
     ("cchip_pose_setup", "gen_component[].size"): lambda p: (
         0, (1 << 18) - (1 << 9) + 2, "a legal map has |m_j| < 2 - 2^-8; each of its three entries is rounded"),
     ("cchip_pose_setup", "difference"): lambda p: (0, (1 << 18) - 1, "b >= c: they are sorted"),
-    ("cchip_bv_offset", "step_q3"): lambda p: (-1, 18, "the grid's step is at least that of B less one, at most that of A or B"),
+    ("cchip_bv_offset", "step_q3"): lambda p: (-1, 18,
+                                               "the grid's step is at least that of B less one, at most that of A or B"),
     ("cchip_bv_offset", "x_q3"): lambda p: (0, (1 << 17) - 1, "epsilon is at least 1: t is rounded"),
     ("cchip_bv_offset", "low"): lambda p: (0, 8, "step_q3 + 1 where step_q3 is below 7"),
-    ("cchip_vertex_transform", "gen_row[].gen_whole.u_dot.xy_q"): lambda p: (-(1 << 54), 1 << 54, "two terms of at most 2^30 2^23"),
+    ("cchip_vertex_transform", "gen_row[].gen_whole.u_dot.xy_q"): lambda p: (
+        -(1 << 54), 1 << 54, "two terms of at most 2^30 2^23"),
     ("cchip_vertex_transform", "gen_axis[].u_a.d"): lambda p: (-3 << 53, 3 << 53, "three terms of at most 2^30 2^23"),
-    ("cchip_vertex_transform", "gen_row[].gen_halves.u_dot.xy_q"): lambda p: (-(1 << 41), 1 << 41, "two terms of at most 2^17 2^23"),
-    ("cchip_vertex_transform", "gen_row[].gen_halves.sum"): lambda p: (-3 << 40, 3 << 40, "three terms of at most 2^17 2^23"),
+    ("cchip_vertex_transform", "gen_row[].gen_halves.u_dot.xy_q"): lambda p: (
+        -(1 << 41), 1 << 41, "two terms of at most 2^17 2^23"),
+    ("cchip_vertex_transform", "gen_row[].gen_halves.sum"): lambda p: (-3 << 40, 3 << 40,
+                                                                       "three terms of at most 2^17 2^23"),
     ("cchip_vertex_transform", "u_unit.below_a3"): lambda p: (0, 39, "x is at least the extent of A's leaf"),
     ("cchip_vertex_transform", "cut_b4"): lambda p: (0, 24, "x is at least the extent of B's leaf"),
     ("cchip_vertex_transform", "u_unit.fine3"): lambda p: (0, 16, "x is at least 8"),
     ("cchip_vertex_transform", "gen_axis[].u_b.q"): lambda p: (
         -(1 << 24), (1 << 24) - 1, "without a shift nothing is rounded up, and a shift halves"),
     ("cchip_vertex_transform", "u_origin.origin12"): lambda p: (
-        -(1 << 44), (1 << 44) - 1, "|t| <= 8, rows of |M| add up to less than 2: below 2^3.1 of B's unit, 2^(48 - 8) to one"),
+        -(1 << 44), (1 << 44) - 1,
+        "|t| <= 8, rows of |M| add up to less than 2: below 2^3.1 of B's unit, 2^(48 - 8) to one"),
     ("cchip_vertex_transform", "a_q"): lambda p: (
         -(1 << 44), (1 << 44) - 1, "the origin is below 2^43.1 and an offset below 2^27"),
     ("cchip_vertex_transform", "cut_b"): lambda p: (0, 24, "x is at least the extent of B's leaf"),
     ("cchip_normaliser", "x_q4"): lambda p: (0, (1 << 45) - 1, "the greatest less the least"),
     ("cchip_normaliser", "y_q4"): lambda p: (0, (1 << 45) - 1, "the greatest less the least"),
     ("cchip_normaliser", "z_q4"): lambda p: (0, (1 << 45) - 1, "the greatest less the least"),
-    ("cchip_normaliser", "gen_out[].from_least_q"): lambda p: (0, (1 << 45) - 1, "a coordinate of the pair less the least"),
+    ("cchip_normaliser", "gen_out[].from_least_q"): lambda p: (0, (1 << 45) - 1,
+                                                               "a coordinate of the pair less the least"),
     ("cchip_normaliser", "gen_out[].rounded"): lambda p: (
         0, (1 << p["COORD_W"]) - 1, "n is the least shift for which the span fits, rounding included"),
-    ("cchip_sat_axis", "m_axis"): lambda p: (-2 * edge(p["COORD_W"]) ** 2, 2 * edge(p["COORD_W"]) ** 2, "two products of two edges"),
+    ("cchip_sat_axis", "m_axis"): lambda p: (-2 * edge(p["COORD_W"]) ** 2, 2 * edge(p["COORD_W"]) ** 2,
+                                             "two products of two edges"),
     ("cchip_sat_project", "m_sign_bound"): lambda p: (
         0, (1 << (2 * p["COORD_W"] + 11)) - 1, "E (|a| + |b| + 2 E) 2^n and 16 |L|_1: below 2^(2 W + 9.3) together"),
     ("cchip_sat_compare", "gen_value[].gen_used.v"): lambda p: (
@@ -151,12 +164,15 @@ REASONS = [
     ("cchip_bv_lane_a", r"(face|corner)\d_q\d|.*plane_q[89]|bits 16:5 of .*plane_q9",
      "planes are numbers modulo their width: those of volumes that overlap fit, and others are apart however they wrap"),
     ("cchip_bv_lane_a", r"bits 21:11 of .*\.p",
-     "two products in one: f face + c corner is at most 14 (f + c) < 2^11, because b + c <= 2 + 2^-5; f corner < 2^11 is below it"),
+     "two products in one: f face + c corner is at most 14 (f + c) < 2^11, because b + c <= 2 + 2^-5; f corner < 2^11 "
+     "is below it"),
     ("cchip_bv_lane_b", r"exponent_q1", "at scales of 3 and more the cuts are 0"),
     ("cchip_bv_offset", r"e_q1\[3:0\] - 4'd6|y\[3:0\] - 4'd6", "read only where it is 0..4 and 0..2"),
     ("cchip_bv_offset", r"y\[2:0\] \+ 3'd1", "y is -1..5 where it is read: y + 1 modulo 8"),
-    ("cchip_bv_offset", r"bits \d+:\d of shifted", "narrow_q8 says whether the bits above are copies; if not, the pair is far"),
-    ("cchip_bv_offset", r"bits 4:0 of next|bits 3:0 of (next|above)", "step_q3 + 1 is 0..19; low and high are read where they are 0..11"),
+    ("cchip_bv_offset", r"bits \d+:\d of shifted",
+     "narrow_q8 says whether the bits above are copies; if not, the pair is far"),
+    ("cchip_bv_offset", r"bits 4:0 of next|bits 3:0 of (next|above)",
+     "step_q3 + 1 is 0..19; low and high are read where they are 0..11"),
     ("", r"~\(15'h7FFF << .*|15'h7FFF << .*", "a mask"),
     ("", r".*1'b1\} << log\[4:2\].*|u_bound.u_shift.d", "one bit of a group: log is below 4 GROUPS"),
     ("cchip_normaliser", r"steps\[3:0\] \+ 4'd1", "read where steps is at most 14"),
@@ -222,7 +238,8 @@ class Netlist:
             out = pathlib.Path(folder) / "words.json"
             script = (f"read_verilog -DSYNTHESIS -Irtl/include {' '.join(files)}; "
                       + "".join(f"chparam -set {name} {value} {module}; " for name, value in parameters.items())
-                      + f"hierarchy -check -top {module}; proc; flatten; opt_expr -mux_undef; opt_clean; write_json {out}")
+                      + f"hierarchy -check -top {module}; proc; flatten; opt_expr -mux_undef; opt_clean; write_json "
+                        f"{out}")
             subprocess.run(["yosys", "-q", "-p", script], cwd=ROOT, check=True)
             for name, about in json.loads(out.read_text())["modules"].items():
                 if int(about["attributes"].get("top", "0"), 2):
@@ -308,7 +325,8 @@ class Netlist:
         return not all(bit in self.used for bit in word["bits"][top:needed(self.word_range(word))])
 
     def bits_range(self, bits, declared_signed, consumer=None):
-        """Interval of a vector of bits: a word, a slice, a number with its sign extended, or several of these joined."""
+        """Interval of a vector of bits: a word, a slice, a number with its sign extended, or several of these
+        joined."""
         bits = list(bits)
         extended = False
         while len(bits) > 1 and bits[-1] == bits[-2] and isinstance(bits[-1], int):
@@ -365,8 +383,10 @@ class Netlist:
     def note(self, word, low, count):
         key = ("slice", id(word), low + count)
         interval = self.word_range(word)
-        self.places[key] = {"what": f"bits {low + count - 1}:{low} of {self.title(word)}", "range": interval, "has": low + count,
-                            "source": self.source(word), "proved": self.fits(interval, low + count), "rest": not self.lost(word, low, count)}
+        self.places[key] = {"what": f"bits {low + count - 1}:{low} of {self.title(word)}", "range": interval,
+                            "has": low + count,
+                            "source": self.source(word), "proved": self.fits(interval, low + count),
+                            "rest": not self.lost(word, low, count)}
 
     def title(self, word):
         """Name of a word, or of the register that it is written to; the number of a generate block is left out."""
@@ -415,7 +435,8 @@ class Netlist:
             return union(value, (0, 0))
         if kind in ("$mux", "$pmux"):
             parts = [ports["A"]] + [ports["B"][i:i + width] for i in range(0, len(ports["B"]), width)]
-            return union(*(self.vector(part, word) for part in parts if part != word["bits"]))  # a register may keep its number
+            # a register may keep its number
+            return union(*(self.vector(part, word) for part in parts if part != word["bits"]))
         if kind in ("$add", "$sub", "$mul", "$neg"):
             a = number("A")
             b = number("B") if kind != "$neg" else (0, 0)
@@ -476,7 +497,8 @@ class Netlist:
         proved = self.fits(value, width)
         if not proved and self.counts(word):
             return unsigned(width)
-        self.places[key] = {"what": self.title(word), "range": value, "has": width, "source": self.source(word), "proved": proved}
+        self.places[key] = {"what": self.title(word), "range": value, "has": width, "source": self.source(word),
+                            "proved": proved}
         return value if proved else (signed(width) if value[0] < 0 else unsigned(width))
 
     def counts(self, word):
@@ -578,24 +600,32 @@ def page(results):
     """The generated page."""
     shown = {"COORD_W": 16, "PASSES": 1, "PROJ_W": 51, "VERTS_A": 4}
     lines = ["<!-- SPDX-License-Identifier: Apache-2.0 -->", "# Widths of the arithmetic", "",
-             "Written by `scripts/widths.py --write` from the RTL; `scripts/lint narrowing` compares it and fails at a place without a",
-             "bound or a reason. Yosys elaborates each module into words, and intervals are carried from the legal ranges of the inputs,",
-             "both ends included, through every operation, all corners of every product. A **place** is a result that is stored in fewer",
+             "Written by `scripts/widths.py --write` from the RTL; `scripts/lint narrowing` compares it and fails at a "
+             "place without a",
+             "bound or a reason. Yosys elaborates each module into words, and intervals are carried from the legal "
+             "ranges of the inputs,",
+             "both ends included, through every operation, all corners of every product. A **place** is a result that "
+             "is stored in fewer",
              "bits than its operands could need, or a slice that leaves out high bits of a result.", "",
-             "*interval*: the range fits whatever the inputs are. *At most so*: it fits because of what the legal inputs are together. Any",
+             "*interval*: the range fits whatever the inputs are. *At most so*: it fits because of what the legal "
+             "inputs are together. Any",
              "other reason: the number is meant modulo its width, or what is left out is looked at elsewhere.", "",
-             "| module and parameters | words | by interval | by a limit | other reason | no bit to spare |", "|---|---|---|---|---|---|"]
+             "| module and parameters | words | by interval | by a limit | other reason | no bit to spare |",
+             "|---|---|---|---|---|---|"]
     for module, parameters, rows in results:
         interval = sum(row[4] == "interval" for row in rows)
         limit = sum((row[4] or "").startswith("at most so") for row in rows)
         tight = sum(row[2] == row[3] for row in rows)
-        lines.append(f"| {label(module, parameters)} | {len(rows)} | {interval} | {limit} | {len(rows) - interval - limit} | {tight} |")
+        lines.append(f"| {label(module, parameters)} | {len(rows)} | {interval} | {limit} | "
+                     f"{len(rows) - interval - limit} | {tight} |")
     for module, parameters, rows in results:
         if any(name in shown and value != shown[name] for name, value in parameters.items()):
             continue
-        lines += ["", f"## {label(module, parameters)}", "", "| word | least | greatest | needs | has | why |", "|---|---|---|---|---|---|"]
+        lines += ["", f"## {label(module, parameters)}", "", "| word | least | greatest | needs | has | why |",
+                  "|---|---|---|---|---|---|"]
         for what, (low, high), bits, has, why, _ in rows:
-            lines.append("| `" + what.replace("|", "\\|") + f"` | {power(low)} | {power(high)} | {bits} | {has} | {(why or 'NONE').replace('|', chr(92) + '|')} |")
+            lines.append("| `" + what.replace("|", "\\|") + f"` | {power(low)} | {power(high)} | {bits} | {has} | "
+                                                            f"{(why or 'NONE').replace('|', chr(92) + '|')} |")
     return "\n".join(lines) + "\n"
 
 
@@ -631,7 +661,8 @@ def main():
         for what, (low, high), bits, has, why, source in rows:
             if why is None:
                 failed += 1
-                print(f"{source}: {label(module, parameters)}: {what} is {low}..{high}, needs {bits} bits, has {has}; make it wider, "
+                print(f"{source}: {label(module, parameters)}: {what} is {low}..{high}, needs {bits} bits, has {has}; "
+                      "make it wider, "
                       "or say in scripts/widths.py why no bit that counts is lost")
             elif options.module:
                 print(f"{label(module, parameters)}: {what} {low}..{high} needs {bits} has {has}: {why}")

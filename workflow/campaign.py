@@ -3,8 +3,8 @@
 """One shard of a campaign, and the sum of all shards. workflow/Snakefile calls this; it also works by hand.
 
 usage: campaign.py run   --kind KIND --amount N --shards N --shard I --bin FOLDER --output FILE [options]
-       campaign.py merge --kind KIND --amount N --shards N --output FILE SHARD... [options]     (a folder: its shard*.json)
-       campaign.py check FILE
+       campaign.py merge --kind KIND --amount N --shards N --output FILE SHARD... [options]     (a folder: its
+       shard*.json) campaign.py check FILE
        campaign.py piece --kind KIND --amount N --shards N --bin FOLDER --output FILE [options]
   --kind NAME    random, grid, relation, certainty, boxes, swaps, chip, faults
   --amount N     pairs (random, grid, relation, certainty, boxes), swaps (swaps) or queries (chip, faults), in all
@@ -18,11 +18,11 @@ the campaign's. `piece` makes the campaign in one piece, with the seeds that the
 shards have, and writes the same table.
 
 How a campaign is cut: pairs and swaps are drawn in parts (65,536 pairs, 50 swaps), each with the seed
-S * K + part modulo 2^64, where K is odd. A shard is a run of whole parts, so the sum of the shards is exactly the run in
-one piece. Pairs: the shard that begins with part f runs with the seed S + f / K, modulo 2^64, which makes its part 0 the
-part f of the campaign. Swaps: cchip_swaps --part. chip and faults draw everything from one stream of numbers and cannot
-be cut so: shard I has the seed S + I, and one piece is the same seeds one after another. The bins of swaps and faults
-are sets, which no sum gives; they are left out.
+S * K + part modulo 2^64, where K is odd. A shard is a run of whole parts, so the sum of the shards is exactly the run
+in one piece. Pairs: the shard that begins with part f runs with the seed S + f / K, modulo 2^64, which makes its part 0
+the part f of the campaign. Swaps: cchip_swaps --part. chip and faults draw everything from one stream of numbers and
+cannot be cut so: shard I has the seed S + I, and one piece is the same seeds one after another. The bins of swaps and
+faults are sets, which no sum gives; they are left out.
 Exit codes: 0 nothing wrong, 1 a shard could not be made or may not be merged, 2 bad arguments, 3 wrong results."""
 import argparse
 import csv
@@ -76,7 +76,8 @@ def commands(o, shard):
     if o.kind in BY_SEED:
         first, end = share(o.amount, o.shards, shard)
         count, seed = str(end - first), str(o.seed + shard)
-        return [] if first == end else [[program, "poses", "--first", count, "--all", "0", "--seed", seed] if o.kind == "chip" else
+        return [] if first == end else [[program, "poses", "--first", count, "--all", "0", "--seed", seed]
+                                        if o.kind == "chip" else
                                         [program, "faults", "--queries", count, "--seed", seed]]
     first, end = share(-(-o.amount // part), o.shards, shard)
     if o.kind == "swaps":
@@ -191,14 +192,17 @@ def load(path, o):
 def merge(o):
     found, programs, counts = {}, set(), {}
     # a folder, because the names of many shards are too long for a command
-    files = [file for path in map(pathlib.Path, o.files) for file in (sorted(path.glob("shard*.json")) if path.is_dir() else [path])]
+    files = [file for path in map(pathlib.Path, o.files)
+             for file in (sorted(path.glob("shard*.json")) if path.is_dir() else [path])]
     for path in files:
         shard = load(path, o)
         if shard["shard"] in found:
             raise Refused(f"{path}: shard {shard['shard']} is in {found[shard['shard']]}, too")
         found[shard["shard"]] = path
         programs.add(shard["program"])
-        add(counts, {**shard["counts"], "total": {**shard["counts"].get("total", {}), "wrong_shards": int(shard["exit_code"] != 0)}})
+        add(counts,
+            {**shard["counts"], "total": {**shard["counts"].get("total", {}),
+                                          "wrong_shards": int(shard["exit_code"] != 0)}})
     missing = sorted(set(range(o.shards)) - set(found))
     if missing:
         raise Refused(f"shards are missing: {' '.join(map(str, missing))}")
@@ -214,7 +218,8 @@ def table(o, counts):
     if o.kind in ("random", "grid", "relation", "certainty", "boxes") and got != o.amount or got < o.amount:
         raise Refused(f"{KINDS[o.kind][3]} is {got}, not {o.amount}")
     lines = [["row", "column", "count"]]
-    lines += [[row, column, value] for row, columns in counts.items() if row != "total" for column, value in columns.items()]
+    lines += [[row, column, value] for row, columns in counts.items() if row != "total"
+              for column, value in columns.items()]
     lines += [["total", column, value] for column, value in total.items()]
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(lines)

@@ -3,12 +3,14 @@
 """Fmax of rows of scripts/fpga.py over seeds of place and route. workflow/fpga.smk calls this.
 
 usage: fpga_sweep.py synth ROW FILE [OPTION...]               synthesises a row; FILE names the folder with the netlist
-       fpga_sweep.py place ROW SEED SYNTH FILE [OPTION...]    places and routes it once; SYNTH: the FILE of synth; OPTION: of scripts/fpga.py, as --freq=125
-       fpga_sweep.py merge CSV SHARD... --seeds N [--parameter NAME]  a line for each row: best, median and worst of all seeds
-       fpga_sweep.py plot CSV SVG                             Fmax against the parameter, or row by row (matplotlib)
+       fpga_sweep.py place ROW SEED SYNTH FILE [OPTION...]    places and routes it once; SYNTH: the FILE of synth;
+                                                              OPTION: of scripts/fpga.py, as --freq=125
+       fpga_sweep.py merge CSV SHARD... --seeds N [--parameter NAME]  a line for each row: best, median and worst of all
+       seeds fpga_sweep.py plot CSV SVG                             Fmax against the parameter, or row by row
+                                                                    (matplotlib)
 
-The outputs of the tools are kept in build/fpga as scripts/fpga.py does, which is the one that runs them; a file is written
-under a temporary name and renamed. Exit codes: 0 done, 1 a tool failed or a seed is missing."""
+The outputs of the tools are kept in build/fpga as scripts/fpga.py does, which is the one that runs them; a file is
+written under a temporary name and renamed. Exit codes: 0 done, 1 a tool failed or a seed is missing."""
 import argparse
 import csv
 import io
@@ -61,7 +63,8 @@ def merge(o, table, *files):
         value = value_of(fpga.rows()[row], o.parameter)
         lines.append([row, o.parameter if value is not None else "", "" if value is None else value, len(clocks),
                       max(clocks.values()), round(statistics.median(clocks.values()), 2), min(clocks.values())])
-        print(f"{row} {f'{o.parameter}={value} ' if value is not None else ''}best={lines[-1][4]} median={lines[-1][5]} "
+        print(f"{row} {f'{o.parameter}={value} ' if value is not None else ''}best={lines[-1][4]} "
+              f"median={lines[-1][5]} "
               f"worst={lines[-1][6]} seeds={len(clocks)}")
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(lines)

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Answers and times of Python's libraries to the queries that distance_speed writes. For each library a line with its name, its version
-and the error of a distance that it allows; then for each query a line
+"""Answers and times of Python's libraries to the queries that distance_speed writes. For each library a line with its
+name, its version and the error of a distance that it allows; then for each query a line
 
-    distance, nearest points of A and of B, 1 or 0 for "at most half the distance?", "at most twice the distance?" and "do they meet?",
-    microseconds of these four calls
+    distance, nearest points of A and of B, 1 or 0 for "at most half the distance?", "at most twice the distance?" and
+    "do they meet?", microseconds of these four calls
 
-with numbers as float.hex() writes them. Only the call is timed, the shorter of two. Runs in build/touching, which `scripts/run peers` makes.
+with numbers as float.hex() writes them. Only the call is timed, the shorter of two. Runs in build/touching, which
+`scripts/run peers` makes.
 
 usage: distance_python.py QUERIES"""
 import importlib.metadata
@@ -67,7 +68,8 @@ class MeshLib:
         self.pose = poses[0]
         relative = np.linalg.inv(poses[0]) @ poses[1]
         rows = [self.module.Vector3f(*(float(x) for x in row[:3])) for row in relative[:3]]
-        self.b_to_a = self.module.AffineXf3f(self.module.Matrix3f(*rows), self.module.Vector3f(*(float(x) for x in relative[:3, 3])))
+        self.b_to_a = self.module.AffineXf3f(self.module.Matrix3f(*rows),
+                                             self.module.Vector3f(*(float(x) for x in relative[:3, 3])))
 
     def distance(self):
         self.found = self.module.findDistance(*self.parts, self.b_to_a)

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Answers of Python's libraries to the cases of docs/cpp/touching_stays.md: a line of their names, then "yes" or "no" of each for every
-line that touching_table --far-cases printed to standard input. Runs in build/touching, which `scripts/run peers` makes."""
+"""Answers of Python's libraries to the cases of docs/cpp/touching_stays.md: a line of their names, then "yes" or "no"
+of each for every line that touching_table --far-cases printed to standard input. Runs in build/touching, which
+`scripts/run peers` makes."""
 import sys
 
 import numpy as np

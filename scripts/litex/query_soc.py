@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A LiteX system of a VexRiscv, a memory and the chip, simulated in Verilator: a C program on the processor asks one query with the driver
-examples/chip_poll.c and prints the answer.
+"""A LiteX system of a VexRiscv, a memory and the chip, simulated in Verilator: a C program on the processor asks one
+query with the driver examples/chip_poll.c and prints the answer.
 
-usage: query_soc.py MEMORY FOLDER      MEMORY: what cchip_query_vectors writes; FOLDER: for program, Verilog and simulation
+usage: query_soc.py MEMORY FOLDER      MEMORY: what cchip_query_vectors writes; FOLDER: for program, Verilog and
+                                       simulation
 
-Runs in the Python of build/venv (make venv). Needs a C compiler for RISC-V, Debian's gcc-riscv64-unknown-elf, Verilator 5 and make.
-Environment: RISCV_GCC, VERILATOR = commands (default: found on PATH). Exit codes: 77 without the compiler, 1 if
-the program does not end."""
+Runs in the Python of build/venv (make venv). Needs a C compiler for RISC-V, Debian's gcc-riscv64-unknown-elf, Verilator
+5 and make. Environment: RISCV_GCC, VERILATOR = commands (default: found on PATH). Exit codes: 77 without the compiler,
+1 if the program does not end."""
 import os
 import pathlib
 import shutil
@@ -23,7 +24,8 @@ WIDTH = 128
 RINGS = 2048  # bytes of both, CHIP_IMAGES of chip_poll.h
 LIMIT = 60000  # clocks
 # a small chip: of the defaults only what makes simulation faster is changed
-PARAMETERS = {"QUERIES": 2, "CACHE_KB": 4, "MISSES": 4, "PAIRS": 12, "LEAVES": 4, "STACK": 8, "LEAF_DEPTH": 16, "LEAF_NUMBERS": 8, "QUEUE_DEPTH": 16}
+PARAMETERS = {"QUERIES": 2, "CACHE_KB": 4, "MISSES": 4, "PAIRS": 12, "LEAVES": 4, "STACK": 8, "LEAF_DEPTH": 16,
+              "LEAF_NUMBERS": 8, "QUEUE_DEPTH": 16}
 
 
 def command(name, default):
@@ -31,14 +33,16 @@ def command(name, default):
 
 
 def run(*parts, cwd):
-    result = subprocess.run([str(part) for part in parts], cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    result = subprocess.run([str(part) for part in parts], cwd=cwd, stdout=subprocess.PIPE,
+                            stderr=subprocess.STDOUT, text=True)
     if result.returncode:
         raise SystemExit(f"{pathlib.Path(str(parts[0])).name}: {result.stdout.strip()}")
     return result.stdout
 
 
 def contents(vectors):
-    """Query, 32 bits a word, and memory, WIDTH bits a word: rings, then the images, to whose place the query's bases move."""
+    """Query, 32 bits a word, and memory, WIDTH bits a word: rings, then the images, to whose place the query's bases
+    move."""
     numbers = [int(line, 16) for line in vectors.read_text().split() if not line.startswith("@")]
     query = [number >> 32 * i & 0xFFFFFFFF for number in numbers[:4] for i in range(4)]
     for base in (0, 1):
@@ -49,16 +53,22 @@ def contents(vectors):
 def program(query, folder):
     """Words of the program, WIDTH bits each."""
     (folder / "query.h").write_text("".join(
-        [f"#define {name} {value:#x}u\n" for name, value in (("CONSOLE", CSR), ("REGISTERS", REGISTERS), ("MEMORY", MEMORY))]
-        + [f"#define STACK {RAM + RAM_SIZE:#x}\n", f"static const uint32_t query[] = {{{', '.join(map(hex, query))}}};\n"]))
+        [f"#define {name} {value:#x}u\n" for name, value in (("CONSOLE", CSR), ("REGISTERS", REGISTERS),
+                                                             ("MEMORY", MEMORY))]
+        + [f"#define STACK {RAM + RAM_SIZE:#x}\n",
+           f"static const uint32_t query[] = {{{', '.join(map(hex, query))}}};\n"]))
     (folder / "string.h").write_text("#include <stddef.h>\nvoid* memcpy(void*, const void*, size_t);\n")
-    (folder / "link.ld").write_text(f"SECTIONS {{ . = {ROM:#x}; .text : {{ *(.start) *(.text*) *(.rodata*) *(.srodata*) }}\n"
-                                    " .data : { *(.data*) *(.sdata*) *(.bss*) *(.sbss*) } ASSERT(SIZEOF(.data) == 0, \"data\") }\n")
+    (folder / "link.ld").write_text(f"SECTIONS {{ . = {ROM:#x}; .text : {{ *(.start) *(.text*) *(.rodata*) "
+                                    f"*(.srodata*) }}\n"
+                                    " .data : { *(.data*) *(.sdata*) *(.bss*) *(.sbss*) } ASSERT(SIZEOF(.data) == 0, "
+                                    "\"data\") }\n")
     gcc = command("RISCV_GCC", "riscv64-unknown-elf-gcc")
     sources = [ROOT / "examples" / name for name in ("litex_query.c", "chip_poll.c")]
-    run(gcc, "-march=rv32i", "-mabi=ilp32", "-Os", "-ffreestanding", "-nostdlib", "-Wall", "-Wextra", "-Werror", f"-I{folder}",
+    run(gcc, "-march=rv32i", "-mabi=ilp32", "-Os", "-ffreestanding", "-nostdlib", "-Wall", "-Wextra", "-Werror",
+        f"-I{folder}",
         f"-I{ROOT}/examples", "-T", folder / "link.ld", "-o", folder / "program.elf", *sources, cwd=folder)
-    run(pathlib.Path(gcc).with_name(pathlib.Path(gcc).name.replace("gcc", "objcopy")), "-O", "binary", folder / "program.elf",
+    run(pathlib.Path(gcc).with_name(pathlib.Path(gcc).name.replace("gcc", "objcopy")), "-O", "binary",
+        folder / "program.elf",
         folder / "program.bin", cwd=folder)
     data = (folder / "program.bin").read_bytes()
     size = WIDTH // 8
@@ -84,9 +94,12 @@ def system(words, memory):
         mem_map = {"rom": ROM, "sram": RAM, "main_ram": MEMORY, "csr": CSR}
 
         def __init__(self, platform):
-            SoCCore.__init__(self, platform, clk_freq=100e6, cpu_type="vexriscv", cpu_variant="minimal", bus_standard="wishbone",
-                             bus_data_width=WIDTH, bus_address_width=32, integrated_rom_size=ROM_SIZE, integrated_rom_init=words,
-                             integrated_sram_size=RAM_SIZE, integrated_main_ram_size=MEMORY_SIZE, integrated_main_ram_init=memory,
+            SoCCore.__init__(self, platform, clk_freq=100e6, cpu_type="vexriscv", cpu_variant="minimal",
+                             bus_standard="wishbone",
+                             bus_data_width=WIDTH, bus_address_width=32, integrated_rom_size=ROM_SIZE,
+                             integrated_rom_init=words,
+                             integrated_sram_size=RAM_SIZE, integrated_main_ram_size=MEMORY_SIZE,
+                             integrated_main_ram_init=memory,
                              with_uart=False, with_timer=False, with_ctrl=False, ident="")
             self.console = Console(platform.request("console"))
             self.csr.add("console", n=0)
@@ -145,10 +158,12 @@ def main():
     sources = [source[0] for source in platform.sources]
     includes = [f"-I{path}" for path in platform.verilog_include_paths]
     # without optimisation: compiling would cost more than it saves
-    run(verilator, "--cc", "--exe", "--main", "--timing", "-Wno-fatal", "-Wno-lint", "-Wno-style", "--top-module", "bench",
+    run(verilator, "--cc", "--exe", "--main", "--timing", "-Wno-fatal", "-Wno-lint", "-Wno-style",
+        "--top-module", "bench",
         "--Mdir", folder / "bench", *includes, folder / "bench.v", folder / "system.v", *sources, cwd=folder)
     run("make", "-C", folder / "bench", "-f", "Vbench.mk", "OPT_FAST=-O0", "OPT_SLOW=-O0", "OPT_GLOBAL=-O0", cwd=folder)
-    text = "\n".join(line for line in run(folder / "bench/Vbench", cwd=folder).splitlines() if not line.endswith("Verilog $finish"))
+    text = "\n".join(line for line in run(folder / "bench/Vbench", cwd=folder).splitlines()
+                     if not line.endswith("Verilog $finish"))
     print(text)
     return 0 if "\nclocks " in text else 1
 

@@ -10,8 +10,8 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-# Rooms of the library, lib/src/<room> and <cchip/internal/<room>/...>; each may use those before it. Headers for users are
-# flat and use each other; any room may use them, too.
+# Rooms of the library, lib/src/<room> and <cchip/internal/<room>/...>; each may use those before it. Headers for users
+# are flat and use each other; any room may use them, too.
 LIB = ["geometry", "mesh", "exact", "tree", "judge", "certificate", "search", "query"]
 ROOMS = {room: set(LIB[:i]) for i, room in enumerate(LIB)}
 ROOMS["mesh"] = {"geometry"}
@@ -24,9 +24,11 @@ ROOMS["wire"] = {"geometry"}
 ROOMS["grid"] = {"geometry", "mesh", "exact", "wire"}
 ROOMS["image"] = {"geometry", "mesh", "exact", "tree", "wire"}
 ROOMS["reference"] = {"geometry", "mesh", "exact", "wire", "grid"}
-ROOMS["model"] = {"geometry", "mesh", "tree", "wire", "grid", "image"}  # no arithmetic in common with exact or reference
+# no arithmetic in common with exact or reference
+ROOMS["model"] = {"geometry", "mesh", "tree", "wire", "grid", "image"}
 ROOMS["blocks"] = ROOMS["model"] | {"model"}  # the RTL's blocks clock by clock, for tests
-ROOMS["driver"] = LIBRARY | {"wire", "grid", "image", "model"}  # what speaks to hardware; its host gives the CPU what a chip leaves
+# what speaks to hardware; its host gives the CPU what a chip leaves
+ROOMS["driver"] = LIBRARY | {"wire", "grid", "image", "model"}
 CPP_REF = {"wire", "grid", "image", "reference", "model", "driver"}
 # Programs, and the simulation.
 ROOMS["program"] = {"geometry"}
@@ -44,20 +46,24 @@ FOLDERS = {"lib/program": "program", "lib/app": "app", "cpp_ref/blocks": "blocks
 
 # CMake target: the targets of this project that it may link, directly.
 LINKS = {
-    "cchip_core": set(), "cchip_mesh_io": {"core"}, "cchip_certificate": {"core"}, "cchip_device": {"certificate", "core"},
+    "cchip_core": set(), "cchip_mesh_io": {"core"}, "cchip_certificate": {"core"},
+    "cchip_device": {"certificate", "core"},
     "cchip_assembly": {"device", "mesh_io"}, "cchip_program": {"core"},
     "cchip_app": {"assembly", "certificate", "device", "mesh_io", "program"}, "cchip": {"app", "commands"},
     "cchip_without_hardware": {"app"},
     "cchip_wire": {"core"}, "cchip_reference": {"wire"}, "cchip_model": {"wire"}, "cchip_blocks": {"core", "model"},
     "cchip_driver": {"certificate", "device", "model", "wire"},
     "cchip_harness": {"verilated"}, "cchip_reconfig": set(), "cchip_waves": {"wire"},
-    "cchip_stimulus": {"core", "model", "program"}, "cchip_pair_vectors": {"stimulus"}, "cchip_query_vectors": {"stimulus"},
-    "cchip_rtl_ports": {"wire", "harness"}, "cchip_rtl_receiver": {"rtl_ports", "model"}, "cchip_rtl_models": {"swap_models"},
+    "cchip_stimulus": {"core", "model", "program"}, "cchip_pair_vectors": {"stimulus"},
+    "cchip_query_vectors": {"stimulus"},
+    "cchip_rtl_ports": {"wire", "harness"}, "cchip_rtl_receiver": {"rtl_ports", "model"},
+    "cchip_rtl_models": {"swap_models"},
     "cchip_rtl": {"driver", "rtl_ports", "rtl_models", "waves"},
     "cchip_commands": {"app", "driver", "stimulus", "reference", "rtl", "waves"},
     "cchip_levels_core": {"reconfig", "core", "stimulus"},
     "cchip_levels_lib": {"levels_core", "reference", "rtl", "rtl_models", "waves", "levels_models"},
-    "_core": {"certificate", "driver", "mesh_io"}, "cchip_levels": {"levels_lib"}, "cchip_table1_lib": {"reconfig"}, "cchip_table1": {"table1_lib", "stimulus"},
+    "_core": {"certificate", "driver", "mesh_io"}, "cchip_levels": {"levels_lib"}, "cchip_table1_lib": {"reconfig"},
+    "cchip_table1": {"table1_lib", "stimulus"},
     "cchip_rc_bench": {"reconfig"}, "cchip_rtl_bench": {"levels_lib", "rtl", "rtl_models"}}
 
 # Folders of rtl/: each may instantiate from those before it in its line.
@@ -68,7 +74,8 @@ RTL = [["common", "arith", "sat", "primtest", "regs", "reconfig", "dispatch", "s
 
 
 def files(pattern):
-    names = subprocess.run(["git", "-C", ROOT, "ls-files", "-z", "--cached", "--others", "--exclude-standard"], check=True,
+    names = subprocess.run(["git", "-C", ROOT, "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
+                           check=True,
                            stdout=subprocess.PIPE, text=True).stdout.split("\0")
     return [name for name in sorted(names) if re.search(pattern, name) and (ROOT / name).is_file()]
 
@@ -124,7 +131,8 @@ class Arrows(unittest.TestCase):
     def test_links(self):
         wrong = []
         for name in files(r"^(lib|cpp_ref|sim)/.*CMakeLists\.txt$"):
-            for target, libraries in re.findall(r"target_link_libraries\(\s*(\w+)\s([^)]*)\)", (ROOT / name).read_text()):
+            for target, libraries in re.findall(r"target_link_libraries\(\s*(\w+)\s([^)]*)\)",
+                                                (ROOT / name).read_text()):
                 linked = set(re.findall(r"\bcchip_(\w+)", libraries)) - {"warnings"}
                 if target not in LINKS:
                     wrong.append(f"{name}: {target} is not in the table of links")

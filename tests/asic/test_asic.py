@@ -24,15 +24,18 @@ import datasheet  # noqa: E402
 from tools import run, tool  # noqa: E402
 
 CELLS = {
-    "INVp5": ("1", {"A": 0.5}, "!A", ""), "INV_1": ("1", {"A": 1.0}, "(!A)", ""), "INV_2": ("1.5", {"A": 2.0}, "A'", ""),
+    "INVp5": ("1", {"A": 0.5}, "!A", ""), "INV_1": ("1", {"A": 1.0}, "(!A)", ""),
+    "INV_2": ("1.5", {"A": 2.0}, "A'", ""),
     "BUF_2": ("2", {"A": 1.0}, "A", ""), "AND2_1": ("2", {"A": 1.0, "B": 1.0}, "(A B)", ""),
     "NAND2_1": ("1.25", {"A": 1.0, "B": 1.25}, "(!A) | (!B)", ""), "NAND2_2": ("3", {"A": 2.0, "B": 2.0}, "!(A&B)", ""),
-    "TIE": ("1", {"A": 1.0}, "", ""), "DFF_1": ("6", {"D": 1.0, "CLK": 1.0}, "IQ", 'ff (IQ, IQN) { clocked_on : "CLK"; next_state : "D"; }'),
+    "TIE": ("1", {"A": 1.0}, "", ""), "DFF_1": ("6", {"D": 1.0, "CLK": 1.0}, "IQ",
+                                                'ff (IQ, IQN) { clocked_on : "CLK"; next_state : "D"; }'),
 }
 
 
 def liberty(time="1ns", load='1, "pf"'):
-    text = f"library (small) {{\n  time_unit : \"{time}\";\n  capacitive_load_unit ({load});\n  slew_lower_threshold_pct_rise : 20;\n"
+    text = (f"library (small) {{\n  time_unit : \"{time}\";\n  capacitive_load_unit ({load});\n  "
+            "slew_lower_threshold_pct_rise : 20;\n")
     for name, (area, inputs, function, more) in CELLS.items():
         text += f'  cell ("{name}") {{\n    area : {area};\n    pg_pin (VDD) {{ direction : input; }}\n    {more}\n'
         text += "".join(f"    pin ({pin}) {{ direction : input; capacitance : {c}; }}\n" for pin, c in inputs.items())
@@ -150,14 +153,16 @@ class Reading(unittest.TestCase):
                 "parameters": {"SIZE": "100", "WIDTH": 8, "RD_PORTS": "1", "WR_PORTS": "1", "RD_CLK_ENABLE": "01",
                                "INIT": "xx", "MEMID": "m"}}
         other = {**cell, "connections": {**cell["connections"], "WR_CLK": [5, 6]}}
-        found = asic.memories(json.dumps({"modules": {"top": {"cells": {"a": cell, "b": {"type": "$add"}, "c": other}}}}))
+        found = asic.memories(
+            json.dumps({"modules": {"top": {"cells": {"a": cell, "b": {"type": "$add"}, "c": other}}}}))
         self.assertEqual([(m["cell"], m["words"], m["width"], m["bits"], m["clocked"]) for m in found],
                          [("a", 4, 8, 32, True), ("c", 4, 8, 32, True)])
         self.assertNotEqual(found[0]["kind"], found[1]["kind"])  # other ports are another cell
         self.assertTrue(found[0]["kind"].startswith("mem_4x8_"))
 
     def test_library_of_boxes(self):
-        ports = {"RD_CLK": 1, "RD_EN": 1, "RD_ADDR": 9, "RD_DATA": 8, "WR_CLK": 1, "WR_EN": 8, "WR_ADDR": 9, "WR_DATA": 8}
+        ports = {"RD_CLK": 1, "RD_EN": 1, "RD_ADDR": 9, "RD_DATA": 8, "WR_CLK": 1, "WR_EN": 8, "WR_ADDR": 9,
+                 "WR_DATA": 8}
         box = {"words": 512, "bits": 4096, "clocked": True, "ports": ports}
         text = asic.box_library(asic.Library(liberty()), 0.1, {"mem_a": box, "mem_b": {**box, "clocked": False}})
         self.assertEqual(text.count("{"), text.count("}"))
@@ -178,7 +183,8 @@ class Reading(unittest.TestCase):
         self.assertAlmostEqual(leakage, 7e-6)
 
     def test_tables_and_last_line(self):
-        row = {"um2": 3308194.0, "nand2": 137841, "ff": 9288, "leaves": 24, "small_bits": 22297, "sram_bits": 0, "ns": 4.349,
+        row = {"um2": 3308194.0, "nand2": 137841, "ff": 9288, "leaves": 24, "small_bits": 22297, "sram_bits": 0,
+               "ns": 4.349,
                "fo4": 43.8, "mhz": 229.9, "start": "a", "end": "b", "cells": 26}
         test = {**row, "mw": {"0.1": 805.1, "0.5": 2134.0}, "mpairs": 94.0, "pj": {"0.1": 8569.0, "0.5": 22710.0}}
         found = {"tri_tri": test, "chip": row, "chip.cache": {**row, "mw": test["mw"]}}
@@ -186,7 +192,8 @@ class Reading(unittest.TestCase):
         self.assertEqual(asic.chip_table(found).count("\n"), 2 + 2)
         for table in (asic.tests_table(found), asic.chip_table(found)):
             self.assertEqual(len({line.count("|") for line in table.splitlines()}), 1, table)
-        self.assertEqual(asic.last_line("tri_tri", test), "tri_tri um2=3308194 nand2=137841 ff=9288 bits=22297 ns=4.349 fo4=43.8 "
+        self.assertEqual(asic.last_line("tri_tri", test),
+                         "tri_tri um2=3308194 nand2=137841 ff=9288 bits=22297 ns=4.349 fo4=43.8 "
                          "mhz=229.9 mw=805.1/2134 mpairs=94.0 pj=8569/2.271e+04")
         self.assertTrue(asic.last_line("chip", row).endswith("mhz=229.9"))
 
@@ -271,13 +278,15 @@ class Products(unittest.TestCase):
                         program = pathlib.Path(folder) / "bench.vvp"
                         self.assertEqual(self.elaborate(leaf, latency, signed, program), (0, ""))
                         code, text = run("vvp", "-n", program, f"+products={products}", f"+seed={seed}")
-                        self.assertEqual((code, text), (0, f"PASS products={products + 12 * 12 - latency} latency={latency}\n"))
+                        self.assertEqual((code, text),
+                                         (0, f"PASS products={products + 12 * 12 - latency} latency={latency}\n"))
 
     def test_bench_sees_another_latency_and_another_sign(self):
         with tempfile.TemporaryDirectory() as folder:
             program = pathlib.Path(folder) / "bench.vvp"
             text = (ROOT / "rtl/vendor/asic/cchip_mul18.v").read_text()
-            for right, wrong in (("STAGES >= 3", "STAGES >= 4"), ("i == 0 || i == 17", "i == 17"), ("18'h1ffff :", "18'h3ffff :")):
+            for right, wrong in (("STAGES >= 3", "STAGES >= 4"), ("i == 0 || i == 17", "i == 17"),
+                                 ("18'h1ffff :", "18'h3ffff :")):
                 with self.subTest(wrong=wrong):
                     changed = pathlib.Path(folder) / "cchip_mul18.v"
                     changed.write_text(text.replace(right, wrong))
@@ -287,7 +296,8 @@ class Products(unittest.TestCase):
                     self.assertIn("FAIL", run("vvp", "-n", program)[1])
 
     def test_other_latencies_and_signs_are_refused(self):
-        for latency, signed, name in ((1, 1, "for_standard_cells_has_CCHIP_MUL18_LATENCY_2_to_4"), (3, 2, "SIGNED_must_be_0_or_1"),
+        for latency, signed, name in ((1, 1, "for_standard_cells_has_CCHIP_MUL18_LATENCY_2_to_4"),
+                                      (3, 2, "SIGNED_must_be_0_or_1"),
                                       (5, 1, "for_standard_cells_has_CCHIP_MUL18_LATENCY_2_to_4")):
             with self.subTest(latency=latency, signed=signed):
                 code, text = self.elaborate("asic", latency, signed, os.devnull)
@@ -303,8 +313,10 @@ class Products(unittest.TestCase):
                     self.assertEqual(run(tool("verilator"), "--lint-only", "-Wall", f"-I{ROOT}/rtl/include", macro,
                                          ROOT / "rtl/lint/verilator_waiver.vlt", f"-GSIGNED={signed}", "--top-module",
                                          "cchip_mul18", *files), (0, ""))
-                    self.assertEqual(run(tool("yosys"), "-q", "-p", f"read_verilog -DSYNTHESIS {macro} -I{ROOT}/rtl/include "
-                                         f"{' '.join(map(str, files))}; hierarchy -check -top cchip_mul18 -chparam SIGNED {signed}; "
+                    self.assertEqual(run(tool("yosys"), "-q", "-p",
+                                         f"read_verilog -DSYNTHESIS {macro} -I{ROOT}/rtl/include "
+                                         f"{' '.join(map(str, files))}; hierarchy -check -top cchip_mul18 -chparam "
+                                         f"SIGNED {signed}; "
                                          "proc; check -assert; select -assert-none t:$dlatch"), (0, ""))
 
 

@@ -19,7 +19,8 @@ SIDES = ["1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4"]
 
 
 def write(path, points, faces):
-    path.write_text("".join("v %.17g %.17g %.17g\n" % tuple(p) for p in points) + "".join(f"f {face}\n" for face in faces))
+    path.write_text("".join("v %.17g %.17g %.17g\n" % tuple(p) for p in points)
+                    + "".join(f"f {face}\n" for face in faces))
 
 
 def main():

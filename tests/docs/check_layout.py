@@ -3,8 +3,9 @@
 """No page of the site is cut: every page is shown by a browser without a window (Debian's chromium) at two widths.
 
 usage: check_layout.py SITE [--screenshots FOLDER PAGE...]     (scripts/run docs-layout)
-  At 1300 px no table, picture or drawing of text is wider than its page (code may scroll). At 400 px, a telephone, the page itself does not scroll
-  sideways and pictures fit; a table, drawing or code that needs more room scrolls in a box of its own.
+  At 1300 px no table, picture or drawing of text is wider than its page (code may scroll). At 400 px, a telephone, the
+  page itself does not scroll sideways and pictures fit; a table, drawing or code that needs more room scrolls in a box
+  of its own.
   --screenshots: instead write a PNG of each page at each width.
 Exit codes: 0 nothing is cut, 1 findings, a line each, 77 not tried: no chromium or no site."""
 import functools
@@ -81,7 +82,8 @@ class Server(http.server.SimpleHTTPRequestHandler):
 
 
 def browser(scratch, *options):
-    return ["chromium", "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars",
+    return ["chromium", "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+            "--hide-scrollbars",
             f"--user-data-dir={scratch}", *options]
 
 
@@ -95,8 +97,10 @@ def screenshots(site, folder, pages):
                 frame = pathlib.Path(scratch) / "frame.html"
                 frame.write_text(f'<body style="margin:0"><iframe src="{(site / page).as_uri()}" '
                                  f'style="border:0;width:{width}px;height:1600px"></iframe>')
-                subprocess.run(browser(f"{scratch}/profile", "--allow-file-access-from-files", f"--window-size={max(width, 500)},1700",
-                                       "--virtual-time-budget=5000", f"--screenshot={shot}", frame.as_uri()), check=True, timeout=120,
+                subprocess.run(browser(f"{scratch}/profile", "--allow-file-access-from-files",
+                                       f"--window-size={max(width, 500)},1700",
+                                       "--virtual-time-budget=5000", f"--screenshot={shot}", frame.as_uri()),
+                               check=True, timeout=120,
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             print(f"wrote {shot}")
 
@@ -125,7 +129,8 @@ def main():
         print(f"no answer of the browser within {TIMEOUT} s")
         return 1
     found, shown = Server.result["found"], Server.result["shown"]
-    print("\n".join(found) if found else f"{len(Server.pages)} pages, {Server.result['blocks']} tables, pictures and drawings at {WIDTHS} px: none cut")
+    print("\n".join(found) if found else f"{len(Server.pages)} pages, {Server.result['blocks']} tables, pictures and "
+                                         f"drawings at {WIDTHS} px: none cut")
     return bool(found) or shown != len(Server.pages) * len(WIDTHS) or not shown
 
 

@@ -27,5 +27,6 @@ if options.write:
     page.write_text(fresh)
     text = fresh
 if found != 1 or same(text) != same(fresh):
-    sys.exit(f"{page}: the output of {program.name} is {'missing' if found != 1 else 'stale'}; run {sys.argv[0]} --write {page} {program}")
+    sys.exit(f"{page}: the output of {program.name} is {'missing' if found != 1 else 'stale'}; run {sys.argv[0]} "
+             f"--write {page} {program}")
 print(f"{page.name}: as {program.name} prints it")

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""MkDocs builds docs/ without warnings, the title of a page is its heading, and no page of the site loads anything from the network.
+"""MkDocs builds docs/ without warnings, the title of a page is its heading, and no page of the site loads anything from
+the network.
 
 usage: check_site.py ROOT SITE
 Exit codes: 0 yes, 1 no, 77 not tried: no build/docs-venv (make docs)."""
@@ -21,7 +22,8 @@ if result.returncode:
     sys.exit(1)
 pages = sorted(site.rglob("*.html"))
 wrong = [f"{page}: {tag}" for page in pages
-         for tag in re.findall(r"<(?:script|img|link|iframe)\b[^>]*\b(?:src|href)=\"(?:https?:)?//[^>]*>", page.read_text())]
+         for tag in re.findall(r"<(?:script|img|link|iframe)\b[^>]*\b(?:src|href)=\"(?:https?:)?//[^>]*>",
+                               page.read_text())]
 # Titles are headings, not names of files, and no two pages have the same: the menu would not tell them apart.
 titles = {}
 for page in pages:

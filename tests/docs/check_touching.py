@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""docs/cpp/touching.md: its table is what touching_table prints, every row is a test of test_touching and every test a row;
-its code is part of examples/touching.cpp, whose output it shows. docs/cpp/touching_stays.md: its table is what
+"""docs/cpp/touching.md: its table is what touching_table prints, every row is a test of test_touching and every test a
+row; its code is part of examples/touching.cpp, whose output it shows. docs/cpp/touching_stays.md: its table is what
 touching_table --far prints, in the columns of the libraries that this build has.
 
 usage: check_touching.py [--write] ROOT TOUCHING_TABLE TEST_TOUCHING EXAMPLE
@@ -23,17 +23,20 @@ def output(*command, check=True):
 
 def columns(table, names):
     """Rows of a table as lists of the cells of these columns."""
-    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines() if line.startswith("| ")]
+    rows = [[cell.strip() for cell in line.strip("|").split("|")]
+            for line in table.splitlines() if line.startswith("| ")]
     return [[row[rows[0].index(name)] for name in names] for row in rows]
 
 
 def with_python(root, table_program, table, last):
-    """The table and its last line with the columns of Python's libraries, if `scripts/run peers` has installed these."""
+    """The table and its last line with the columns of Python's libraries, if `scripts/run peers` has installed
+    these."""
     python = root / "build" / "touching" / "bin" / "python"
     if not (root / "build" / "touching" / "touching_requirements.txt").exists():
         return table, last
     cases = output(table_program, "--far-cases")
-    answers = subprocess.run([python, root / "bench" / "peers" / "touching_python.py"], input=cases, stdout=subprocess.PIPE, text=True,
+    answers = subprocess.run([python, root / "bench" / "peers" / "touching_python.py"], input=cases,
+                             stdout=subprocess.PIPE, text=True,
                              check=True).stdout.splitlines()
     names = answers[0].split("\t")
     lines = table.splitlines()
@@ -54,12 +57,14 @@ def check_far(root, table_program, write):
     printed = output(table_program, "--far")
     table, last = with_python(root, table_program, *printed.rstrip("\n").rsplit("\n", 1))
     if write:
-        page.write_text(TABLE.sub(lambda found: f"{found[1]}{table}\n\n    {last}\n{found[2]}", page.read_text(), count=1))
+        page.write_text(TABLE.sub(lambda found: f"{found[1]}{table}\n\n    {last}\n{found[2]}",
+                                  page.read_text(), count=1))
     shown = TABLE.search(page.read_text())
     names = [cell.strip() for cell in table.splitlines()[0].strip("|").split("|")]
     if not shown:
         return ["docs/cpp/touching_stays.md has no table"]
-    head = [cell.strip() for cell in next(line for line in shown[0].splitlines() if line.startswith("| ")).strip("|").split("|")]
+    head = [cell.strip()
+            for cell in next(line for line in shown[0].splitlines() if line.startswith("| ")).strip("|").split("|")]
     both = [name for name in names if name in head]
     if len(both) < 7 or columns(shown[0], both) != columns(table, both):
         return ["docs/cpp/touching_stays.md: the table is stale, run this script with --write after scripts/run peers"]
@@ -79,7 +84,8 @@ def main():
         text = fresh
     wrong = []
     if not TABLE.search(text) or not OUTPUT.search(text) or text != fresh:
-        wrong.append(f"the table or the output is stale, run: {pathlib.Path(__file__).name} --write {' '.join(arguments)}")
+        wrong.append(f"the table or the output is stale, run: {pathlib.Path(__file__).name} --write "
+                     f"{' '.join(arguments)}")
 
     rows = re.findall(r"^\| ([^|]+) \| (?:apart|touching|crossing) \|", table, re.M)
     listed = output(test_program, "--list-test-names-only", check=False)  # its exit code is the number of tests
@@ -96,7 +102,8 @@ def main():
     if not blocks or not all(block in source for block in blocks):
         wrong.append("the C++ in it is not in examples/touching.cpp")
 
-    print("\n".join(f"docs/cpp/touching.md: {line}" for line in wrong) if wrong else f"{len(rows)} rows, each with its test")
+    print("\n".join(f"docs/cpp/touching.md: {line}" for line in wrong) if wrong
+          else f"{len(rows)} rows, each with its test")
     sys.exit(1 if wrong else 0)
 
 

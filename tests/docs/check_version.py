@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The version is in one place, project(collisionchip VERSION ...) of CMakeLists.txt; what cannot read it there says the same, and
-the last release of CHANGELOG.md has this version and the date of CITATION.cff.
+"""The version is in one place, project(collisionchip VERSION ...) of CMakeLists.txt; what cannot read it there says the
+same, and the last release of CHANGELOG.md has this version and the date of CITATION.cff.
 
 usage: check_version.py ROOT [--tag TAG] [--notes FILE]
   --tag    a tag that is to be released: must be v and the version
@@ -48,6 +48,7 @@ else:
 if options.tag and options.tag != f"v{version}":
     wrong.append(f"tag {options.tag}: the version is {version}, so it must be v{version}")
 if options.notes:
-    options.notes.write_text(read("CHANGELOG.md", rf"^## \[{re.escape(version)}\].*\n((?:(?!## ).*\n?)*)").strip() + "\n")
+    options.notes.write_text(read("CHANGELOG.md",
+                                  rf"^## \[{re.escape(version)}\].*\n((?:(?!## ).*\n?)*)").strip() + "\n")
 print("\n".join(wrong) if wrong else version)
 sys.exit(bool(wrong))

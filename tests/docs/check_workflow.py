@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The commands of the hosted runs exist: each target of make and of scripts/run, each script in the repository; .ci/run and make wheel are
-among them, so that what is checked is said in one place.
+"""The commands of the hosted runs exist: each target of make and of scripts/run, each script in the repository; .ci/run
+and make wheel are among them, so that what is checked is said in one place.
 
 usage: check_workflow.py ROOT"""
 import pathlib
@@ -9,7 +9,8 @@ import re
 import sys
 
 root = pathlib.Path(sys.argv[1])
-targets = {command: set(re.findall(r"^([a-z][a-z0-9-]*):", (root / file).read_text(), re.M)) for command, file in (("make", "Makefile"), ("scripts/run", "scripts/run.mk"))}
+targets = {command: set(re.findall(r"^([a-z][a-z0-9-]*):", (root / file).read_text(), re.M))
+           for command, file in (("make", "Makefile"), ("scripts/run", "scripts/run.mk"))}
 commands, wrong = [], []
 for path in [*sorted((root / ".github/workflows").glob("*.yml")), root / ".ci/run"]:
     text = path.read_text()

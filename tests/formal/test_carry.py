@@ -40,7 +40,9 @@ class Carry(unittest.TestCase):
 
     def test_text(self):
         """Lines more, a declaration that nobody reads: the same netlist."""
-        self.assertTrue(self.is_same(self.replaced("  localparam [31:0] TWO = 2;\n", "\n\n  localparam [31:0] TWO = 1 + 1;\n  localparam integer UNREAD = 3;\n")))
+        self.assertTrue(self.is_same(self.replaced("  localparam [31:0] TWO = 2;\n",
+                                                   "\n\n  localparam [31:0] TWO = 1 + 1;\n  localparam integer UNREAD "
+                                                   "= 3;\n")))
 
     def test_logic(self):
         for old, new in (("  localparam [31:0] TWO = 2;\n", "  localparam [31:0] TWO = 3;\n"),):
@@ -53,7 +55,8 @@ class Carry(unittest.TestCase):
 
     def test_tags(self):
         """Lines of a task, of its group, of all."""
-        text = "[tasks]\na\nb group\n\n[options]\nmode: x\na: depth 3\ngroup: depth 4\n\n[script]\nb: one\ntwo\n\n[files]\n"
+        text = ("[tasks]\na\nb group\n\n[options]\nmode: x\na: depth 3\ngroup: depth 4\n\n[script]\nb: one\ntwo\n\n"
+                "[files]\n")
         self.assertEqual(run.of_task(text, "options", "a"), ["mode: x", "depth 3"])
         self.assertEqual(run.of_task(text, "options", "b"), ["mode: x", "depth 4"])
         self.assertEqual(run.of_task(text, "script", "b"), ["one", "two"])

@@ -84,7 +84,8 @@ class Reports(unittest.TestCase):
     def test_cells_of_regions_count_once_per_slot(self):
         module = lambda cells: {"num_cells_by_type": cells}
         modules = {"\\fpga_harness": module({"LUT4": 1, "$paramod\\fpga_subsystem\\SLOTS=2": 1}),
-                   "$paramod\\fpga_subsystem\\SLOTS=2": module({"TRELLIS_FF": 3, "$paramod$1\\cchip_primtest_subsystem": 1}),
+                   "$paramod\\fpga_subsystem\\SLOTS=2": module(
+                       {"TRELLIS_FF": 3, "$paramod$1\\cchip_primtest_subsystem": 1}),
                    "$paramod$1\\cchip_primtest_subsystem": module({"LUT4": 10, "$paramod$2\\cchip_pr_region": 2}),
                    "$paramod$2\\cchip_pr_region": module({"LUT4": 100, "inner": 1}),
                    "\\inner": module({"LUT4": 1000})}
@@ -92,9 +93,11 @@ class Reports(unittest.TestCase):
         self.assertEqual((static, regions, harness), ({"LUT4": 10}, {"LUT4": 2200}, {"LUT4": 1, "TRELLIS_FF": 3}))
 
     def test_slowest_ends_by_register(self):
-        end = lambda cell, delay, event="posedge clk": {"cell": f"u_dut.{cell}", "delay": [delay - 0.5, delay], "event": event, "port": "DI"}
+        end = lambda cell, delay, event="posedge clk": {"cell": f"u_dut.{cell}", "delay": [delay - 0.5, delay],
+                                                        "event": event, "port": "DI"}
         nets = [{"event": "posedge clk", "endpoints": [end("a_TRELLIS_FF_Q", 3.0), end("b_TRELLIS_FF_Q_1", 5.0)]},
-                {"event": "posedge clk", "endpoints": [end("b_TRELLIS_FF_Q_2", 4.0), end("c_TRELLIS_FF_Q", 9, "<async>")]},
+                {"event": "posedge clk", "endpoints": [end("b_TRELLIS_FF_Q_2", 4.0),
+                                                       end("c_TRELLIS_FF_Q", 9, "<async>")]},
                 {"event": "<async>", "endpoints": [end("d_TRELLIS_FF_Q", 9.0)]},
                 {"event": "posedge clk", "endpoints": [end("e_TRELLIS_FF_Q", 1.0)]}]
         self.assertEqual(fpga.endpoints({"detailed_net_timings": nets}, 2), [["b", 5.0], ["a", 3.0]])
@@ -150,14 +153,19 @@ class Floorplan(unittest.TestCase):
         core = "u_dut.u_core."
         broad = core + "u_broad_phase."
         rams = [f"{broad}u_cache.u_data.gen_blocks.gen_block[{i}].u_block" for i in range(cache_blocks)] + \
-            [f"{broad}u_cache.u_fill.gen_beat[{b}].u_beats.gen_block[{i}].u_block" for b in range(4) for i in range(4)] + \
-            [f"{broad}u_cache.gen_port[{p}].u_port.u_entries.gen_block[{i}].u_block" for p in range(2) for i in range(4)] + \
-            [f"{broad}u_get_data.u_pairs.gen_port[{p}].u_lines.gen_block[{i}].u_block" for p in range(2) for i in range(14)] + \
+            [f"{broad}u_cache.u_fill.gen_beat[{b}].u_beats.gen_block[{i}].u_block" for b in range(4)
+             for i in range(4)] + \
+            [f"{broad}u_cache.gen_port[{p}].u_port.u_entries.gen_block[{i}].u_block" for p in range(2)
+             for i in range(4)] + \
+            [f"{broad}u_get_data.u_pairs.gen_port[{p}].u_lines.gen_block[{i}].u_block" for p in range(2)
+             for i in range(14)] + \
             [f"{broad}u_bv_unit.u_feed.u_{side}.gen_block[{i}].u_block" for side in "ab" for i in range(12)] + \
             [f"{core}u_queues.u_memory.gen_block[0].u_block"]
         multipliers = [f"{broad}u_bv_unit.u_lane_a.gen_direction[{i}].u_block" for i in range(77)] + \
-            [f"{core}u_transform.u_vertices.u_mul[{i}].u_block" for i in range(36)] + [f"{core}u_slots.u_mul[{i}].u_block" for i in range(test)]
-        return {**dict.fromkeys(rams, "DP16KD"), **dict.fromkeys(multipliers, "MULT18X18D"), "u_dut.u_core.x_LUT4_A": "TRELLIS_COMB"}
+            [f"{core}u_transform.u_vertices.u_mul[{i}].u_block"
+             for i in range(36)] + [f"{core}u_slots.u_mul[{i}].u_block" for i in range(test)]
+        return {**dict.fromkeys(rams, "DP16KD"), **dict.fromkeys(multipliers, "MULT18X18D"),
+                "u_dut.u_core.x_LUT4_A": "TRELLIS_COMB"}
 
     def test_each_has_a_place_of_its_own_and_its_kind(self):
         for cache_blocks in (7, 28, 56, 120):
@@ -167,11 +175,14 @@ class Floorplan(unittest.TestCase):
                 self.assertEqual(set(found), {cell for cell, kind in kinds.items() if kind != "TRELLIS_COMB"})
                 self.assertEqual(len(set(found.values())), len(found))
                 for cell, bel in found.items():
-                    self.assertRegex(bel, r"/Y(22|46|70|82)/EBR[0-3]$" if kinds[cell] == "DP16KD" else r"/Y(10|34|58)/MULT18_[0145]$")
+                    self.assertRegex(bel, r"/Y(22|46|70|82)/EBR[0-3]$" if kinds[cell] == "DP16KD"
+                                     else r"/Y(10|34|58)/MULT18_[0145]$")
 
     def test_rams_of_the_same_bits_lie_beside_each_other(self):
         found = fpga.floorplan.anchors(self.chip())
-        column = lambda port, block: int(re.search(r"X(\d+)", found[f"u_dut.u_core.u_broad_phase.u_get_data.u_pairs.gen_port[{port}].u_lines.gen_block[{block}].u_block"])[1])
+        column = lambda port, block: int(re.search(r"X(\d+)",
+                                                   found[
+                                                       f"u_dut.u_core.u_broad_phase.u_get_data.u_pairs.gen_port[{port}].u_lines.gen_block[{block}].u_block"])[1])
         self.assertTrue(all(abs(column(0, block) - column(1, block)) <= 3 for block in range(14)))
 
     def test_more_than_the_device_has_is_an_error(self):
@@ -179,7 +190,9 @@ class Floorplan(unittest.TestCase):
             fpga.floorplan.anchors(self.chip(test=50))
 
     def test_the_netlist_keeps_everything_else(self):
-        text = json.dumps({"modules": {"top": {"cells": {"u_slots.a": {"type": "MULT18X18D", "attributes": {"src": "x"}}, "b": {"type": "LUT4"}}}}})
+        text = json.dumps(
+            {"modules": {"top": {"cells": {"u_slots.a": {"type": "MULT18X18D", "attributes": {"src": "x"}},
+                                           "b": {"type": "LUT4"}}}}})
         top = json.loads(fpga.floorplan.anchored(text, {"router2/bbMargin/x": "14"}))["modules"]["top"]
         cells = top["cells"]
         self.assertEqual(top["settings"], {"router2/bbMargin/x": "14"})
@@ -187,7 +200,8 @@ class Floorplan(unittest.TestCase):
         self.assertEqual(cells["b"], {"type": "LUT4"})
 
     def test_the_picture_has_each_block_in_its_colour(self):
-        svg = fpga.floorplan.picture({"a": (1, 2), "b": (1, 2), "c": (9, 9)}, {"a": "TRELLIS_FF", "b": "TRELLIS_FF", "c": "DP16KD"},
+        svg = fpga.floorplan.picture({"a": (1, 2), "b": (1, 2), "c": (9, 9)},
+                                     {"a": "TRELLIS_FF", "b": "TRELLIS_FF", "c": "DP16KD"},
                                      lambda cell: "u_x" if cell in "ab" else "u_y", "title")
         self.assertEqual((svg.count("<rect"), svg.count("<path"), svg.count('stroke="#000"')), (1 + 1 + 3, 2, 1))
         self.assertIn(">u_x</text>", svg)
@@ -204,8 +218,10 @@ class Placement(unittest.TestCase):
     """A register a, a LUT behind it, a register b; a block RAM that b addresses: placed by hand, delays made up."""
     NETLIST = {"modules": {"unused": {"cells": {}}, "top": {"cells": {
         name: {"type": kind, "attributes": {"NEXTPNR_BEL": place}} for name, kind, place in (
-            ("u_dut.u_core.u_x.a_TRELLIS_FF_Q", "TRELLIS_FF", "X2/Y3/SLICEA.FF0"), ("u_dut.u_core.u_x.a_LUT4_A", "TRELLIS_COMB", "X5/Y9/SLICEA.LUT0"),
-            ("u_dut.u_core.u_y.b_TRELLIS_FF_Q_1", "TRELLIS_FF", "X70/Y60/SLICEA.FF0"), ("u_dut.u_core.u_y.u_ram.mem.0.0", "DP16KD", "X71/Y61/EBR0"))}}}}
+            ("u_dut.u_core.u_x.a_TRELLIS_FF_Q", "TRELLIS_FF", "X2/Y3/SLICEA.FF0"),
+            ("u_dut.u_core.u_x.a_LUT4_A", "TRELLIS_COMB", "X5/Y9/SLICEA.LUT0"),
+            ("u_dut.u_core.u_y.b_TRELLIS_FF_Q_1", "TRELLIS_FF", "X70/Y60/SLICEA.FF0"),
+            ("u_dut.u_core.u_y.u_ram.mem.0.0", "DP16KD", "X71/Y61/EBR0"))}}}}
     DELAYS = """
         (INTERCONNECT u_dut.u_core.u_x.a_TRELLIS_FF_Q/Q u_dut.u_core.u_x.a_LUT4_A/A (1000:1000:1000) (900:900:900))
         (INTERCONNECT u_dut.u_core.u_x.a_LUT4_A/F u_dut.u_core.u_y.b_TRELLIS_FF_Q_1/DI (6000:6000:6000) (6000:6000:6000))
@@ -229,13 +245,15 @@ class Placement(unittest.TestCase):
         self.assertAlmostEqual(slow, 0.525 + 1.0 + 0.24 + 6.0 + 0.035)
         self.assertAlmostEqual(fast, 0.525 + 0.8 + 0.1)
         path = self.timing.path(slow, end)
-        self.assertEqual((fpga.name_of(path.source), path.pin, self.timing.look_up_tables(path)), ("u_core.u_x.a", "DI", 1))
+        self.assertEqual((fpga.name_of(path.source), path.pin, self.timing.look_up_tables(path)),
+                         ("u_core.u_x.a", "DI", 1))
         self.assertAlmostEqual(path.wire_ns, 7.0)
         self.assertEqual(other, ("u_dut.u_core.u_y.u_ram.mem.0.0", "ADA3"))
 
     def test_sources_are_ranked_and_blocks_have_a_place(self):
         sources = placed.ranking(self.timing, fpga.name_of, 5)
-        self.assertEqual([(fpga.name_of(path.source), behind) for path, behind in sources], [("u_core.u_x.a", 1), ("u_core.u_y.b", 0)])
+        self.assertEqual([(fpga.name_of(path.source), behind) for path, behind in sources],
+                         [("u_core.u_x.a", 1), ("u_core.u_y.b", 0)])
         self.assertEqual(placed.spread(self.timing, fpga.block_in)["u_y"], (2, [[70, 71, 71], [60, 61, 61]]))
 
     def test_estimate_of_several_seeds(self):
@@ -244,7 +262,8 @@ class Placement(unittest.TestCase):
 
     def test_rows_of_blocks_have_the_parameters_of_the_chip(self):
         # what each instance in the chip sets to a number is what its row says
-        text = "".join((ROOT / "rtl" / file).read_text() for file in ("chip/cchip_chip_core.v", "traversal/cchip_broad_phase.v"))
+        text = "".join((ROOT / "rtl" / file).read_text()
+                       for file in ("chip/cchip_chip_core.v", "traversal/cchip_broad_phase.v"))
         chip = dict(datasheet.parse("cchip_chip")[0])
         chip.update(PLACES=int(chip["PAIRS"]) + int(chip["LEAVES"]), LEAF_W=6, CONTEXT_W=4, KINDS=3, PLACE_W=6)
         compared = 0
@@ -254,7 +273,8 @@ class Placement(unittest.TestCase):
                 continue
             own = dict(datasheet.parse(name)[0]) | dict(parameters)
             for parameter, value in re.findall(r"\.(\w+) *\(([^()]*)\)", instance[1]):
-                value = eval(value, {}, {key: int(n) for key, n in chip.items() if str(n).isdigit()}) if "`" not in value else None
+                value = eval(value, {}, {key: int(n)
+                                         for key, n in chip.items() if str(n).isdigit()}) if "`" not in value else None
                 if value is not None:
                     self.assertEqual(int(own[parameter]), value, f"{name}.{parameter}")
                     compared += 1

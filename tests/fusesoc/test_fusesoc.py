@@ -4,8 +4,9 @@
 
 usage: test_fusesoc.py Files | Lint | Sim | Ecp5
 
-Environment: PAIR_VECTORS, QUERY_VECTORS = the programs cchip_pair_vectors, cchip_query_vectors; FUSESOC = the command (default: build/venv/bin/fusesoc,
-installed by `make venv`). Without FuseSoC all but Files end with code 77 (skipped)."""
+Environment: PAIR_VECTORS, QUERY_VECTORS = the programs cchip_pair_vectors, cchip_query_vectors; FUSESOC = the command
+(default: build/venv/bin/fusesoc, installed by `make venv`). Without FuseSoC all but Files end with code 77
+(skipped)."""
 import collections
 import json
 import os
@@ -39,7 +40,8 @@ class Files(unittest.TestCase):
             self.assertTrue((ROOT / name).is_file(), name)
 
     def test_version_is_that_of_the_project(self):
-        version = re.search(r"^project\(collisionchip VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text(), re.M).group(1)
+        version = re.search(r"^project\(collisionchip VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text(),
+                            re.M).group(1)
         self.assertIn(f"\nname: ::collisionchip:{version}\n", CORE)
 
     def test_vectors_are_up_to_date(self):

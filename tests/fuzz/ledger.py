@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""All inputs that fuzzers have tried so far: docs/figures/fuzz.csv, a row for each run of a target, and the table of docs/develop/verification.md.
+"""All inputs that fuzzers have tried so far: docs/figures/fuzz.csv, a row for each run of a target, and the table of
+docs/develop/verification.md.
 
 usage: ledger.py --add LINES   append the lines `target=...` that run.sh printed, with HEAD; then as --table
        ledger.py --table       write the table from the rows
        ledger.py --check       exit code 1 unless the table is that of the rows
 
-The last line is `executions=N findings=F`. Exit codes: 0 done, 1 the table is stale or a line is not understood, 2 bad arguments."""
+The last line is `executions=N findings=F`. Exit codes: 0 done, 1 the table is stale or a line is not understood, 2 bad
+arguments."""
 import collections
 import csv
 import pathlib
@@ -27,12 +29,15 @@ TEXTS = ("target", "build", "commit")
 
 def rows():
     with RECORD.open() as file:
-        return [{column: row[column] if column in TEXTS else int(row[column]) for column in COLUMNS} for row in csv.DictReader(file)]
+        return [{column: row[column] if column in TEXTS else int(row[column]) for column in COLUMNS}
+                for row in csv.DictReader(file)]
 
 
 def add(path):
-    commit = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--short=7", "HEAD"], stdout=subprocess.PIPE, text=True, check=True).stdout.strip()
-    lines = [dict(re.findall(r"(\w+)=(\S+)", line)) for line in pathlib.Path(path).read_text().splitlines() if line.startswith("target=")]
+    commit = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--short=7", "HEAD"], stdout=subprocess.PIPE,
+                            text=True, check=True).stdout.strip()
+    lines = [dict(re.findall(r"(\w+)=(\S+)", line))
+             for line in pathlib.Path(path).read_text().splitlines() if line.startswith("target=")]
     if not lines or any(not set(line) >= {"target", "build", *COUNTS} for line in lines):
         print(f"ledger.py: {path}: no lines `target=...` as run.sh prints them", file=sys.stderr)
         return 1
@@ -56,8 +61,10 @@ def table():
             found[3] += row["seconds"]
             found[4] = row["commit"]
     names = sorted(set(sums) - {"all"}) + ["all"]
-    lines = ["| target | inputs tried | of them with AddressSanitizer | findings | hours of one core | last at |", "|---|---|---|---|---|---|"]
-    lines += [f"| {f'`{name}`' if name != 'all' else name} | {sums[name][0]:,} | {sums[name][1]:,} | {sums[name][2]} | {sums[name][3] / 3600:.1f} | {sums[name][4]} |" for name in names]
+    lines = ["| target | inputs tried | of them with AddressSanitizer | findings | hours of one core | last at |",
+             "|---|---|---|---|---|---|"]
+    lines += [f"| {f'`{name}`' if name != 'all' else name} | {sums[name][0]:,} | {sums[name][1]:,} | {sums[name][2]} | "
+              f"{sums[name][3] / 3600:.1f} | {sums[name][4]} |" for name in names]
     return "\n".join(lines) + "\n", sums["all"]
 
 
@@ -71,7 +78,8 @@ def main():
     text, total = table()
     if sys.argv[1] == "--check":
         if text not in PAGE.read_text():
-            print("ledger.py: the table of docs/develop/verification.md is not that of docs/figures/fuzz.csv; run: tests/fuzz/ledger.py --table", file=sys.stderr)
+            print("ledger.py: the table of docs/develop/verification.md is not that of docs/figures/fuzz.csv; run: "
+                  "tests/fuzz/ledger.py --table", file=sys.stderr)
             return 1
     else:
         datasheet.rewrite(PAGE, "fuzz", text)

@@ -372,7 +372,8 @@ def main(arguments):
     failed = 0
     with bar, concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         bar.total = len(list(tasks(options)))
-        running = [(name, pool.submit(bar.counted(function), *parameters)) for name, function, parameters in tasks(options)]
+        running = [(name, pool.submit(bar.counted(function), *parameters))
+                   for name, function, parameters in tasks(options)]
         if options.command == "simulate" and options.changed > 0:
             _, _, (technology, kind, build, _) = next(tasks(options))
             first = running[0][1]

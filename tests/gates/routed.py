@@ -9,10 +9,10 @@ usage: routed.py ROW SYNTHESIS ROUTED --queries PROGRAM [--build FOLDER]
   --build FOLDER     for outputs (default build/gates)
   --jobs N           tools at the same time (default 2)
 
-The registers of the harness around the chip (scripts/fpga.py) are left out, so that the chip's ports are those of the RTL;
-tests/icarus/bench_chip.v asks one query, and compares the records with the model's. Block RAM and multipliers are the models of
-this folder, flip-flops begin as the device configures them. The RTL goes first, with the same parameters and the same bench, in
-Icarus; the netlist in Verilator 5.
+The registers of the harness around the chip (scripts/fpga.py) are left out, so that the chip's ports are those of the
+RTL; tests/icarus/bench_chip.v asks one query, and compares the records with the model's. Block RAM and multipliers are
+the models of this folder, flip-flops begin as the device configures them. The RTL goes first, with the same parameters
+and the same bench, in Icarus; the netlist in Verilator 5.
 Lines: `ROW rtl query=1 records=N wrong=0 clocks=C`, `ROW routed cells=M query=1 records=N wrong=0 clocks=C`.
 Exit codes: 0 as many clocks and records in both, none wrong; 1 not so, or a tool failed; 2 bad arguments."""
 import argparse
@@ -30,11 +30,13 @@ from gates import Failure, run  # noqa: E402
 
 BENCH = ROOT / "tests/icarus/bench_chip.v"
 ZERO, ONE = "1'b0", "1'b1"
-CONTROL = re.compile(r"(?:CLK|RST|WE|CE|OCE)[AB]|CS[AB][0-2]")  # inputs of a block RAM that are 1 if nothing is connected
+# inputs of a block RAM that are 1 if nothing is connected
+CONTROL = re.compile(r"(?:CLK|RST|WE|CE|OCE)[AB]|CS[AB][0-2]")
 
 
 def choose(bits, inputs):
-    """The value that the inputs, the lowest bit of the number first, choose of bits: nested conditions, as few as it takes."""
+    """The value that the inputs, the lowest bit of the number first, choose of bits: nested conditions, as few as it
+    takes."""
     if len(set(bits)) == 1:
         return f"1'b{bits[0]}"
     half = len(bits) // 2
@@ -65,7 +67,8 @@ class Netlist:
                 raise Failure(f"no model of the cell {kind}, {name}")
             if any(pins.get(pin, clock) != clock for pin in ("CLK", "WCK", "CLKA", "CLKB", "CLK0")):
                 raise Failure(f"{name} has another clock")
-            yield from getattr(self, kind.lower())(pins, parameters) if kind not in self.models else [self.block(kind, pins, parameters)]
+            yield from getattr(self, kind.lower())(pins, parameters) if kind not in self.models else [
+                self.block(kind, pins, parameters)]
 
     def trellis_ff(self, pins, parameters):
         data = pins["DI" if parameters["SD"] == "1" else "M"]
@@ -107,7 +110,8 @@ class Netlist:
             raise Failure(f"no model of the mode {mode}")
 
     def trellis_ramw(self, pins, _):
-        for output, pin in (("WDO0", "C1"), ("WDO1", "A1"), ("WDO2", "D1"), ("WDO3", "B1"), ("WADO0", "D0"), ("WADO1", "B0"), ("WADO2", "C0"), ("WADO3", "A0")):
+        for output, pin in (("WDO0", "C1"), ("WDO1", "A1"), ("WDO2", "D1"), ("WDO3", "B1"), ("WADO0", "D0"),
+                            ("WADO1", "B0"), ("WADO2", "C0"), ("WADO3", "A0")):
             if output in pins:
                 yield f"assign {pins[output]} = {pins.get(pin, ONE)};"
 
@@ -120,19 +124,22 @@ class Netlist:
                 given[name] = str(int(value, 2)) if re.fullmatch("[01]+", value) else f'"{value}"'
             elif name.startswith("INITVAL") and "1" in value:
                 raise Failure("a block RAM with initial contents")
-        for pin in re.findall(r"\w+", " ".join(re.findall(r"^ *input +wire ([\w, \n]+?)(?=,\n *output|,\n *input|\n\))", text, re.M))):
+        for pin in re.findall(r"\w+", " ".join(
+            re.findall(r"^ *input +wire ([\w, \n]+?)(?=,\n *output|,\n *input|\n\))", text, re.M))):
             choice = parameters.get(pin + "MUX", "")
             if pin in pins:
                 pins[pin] = "!" * (choice == "INV") + pins[pin]
             else:
                 one = choice != "INV" if kind == "DP16KD" and CONTROL.fullmatch(pin) else choice == "1"
                 pins[pin] = ONE if one else ZERO
-        return (f"{kind} #({', '.join(f'.{name}({value})' for name, value in sorted(given.items()))}) u{pins.get('DOB0', pins.get('P0', 'none'))} "
+        return (f"{kind} #({', '.join(f'.{name}({value})' for name, value in sorted(given.items()))}) "
+                f"u{pins.get('DOB0', pins.get('P0', 'none'))} "
                 f"({', '.join(f'.{pin}({net})' for pin, net in sorted(pins.items()))});")
 
 
 def chip(row, before, after):
-    """Module cchip_chip around the netlist. before: of Yosys, whose nets `in` and `out` are the chip's ports; after: of nextpnr."""
+    """Module cchip_chip around the netlist. before: of Yosys, whose nets `in` and `out` are the chip's ports; after: of
+    nextpnr."""
     netlist = Netlist(after)
     names = {}
     for name, net in before["netnames"].items():
@@ -146,9 +153,11 @@ def chip(row, before, after):
             del netlist.cells[name]
     clock = next(cell["connections"]["CLKO"][0] for cell in netlist.cells.values() if cell["type"] == "DCCA")
     lines = list(netlist.lines(f"n{clock}"))
-    driven, used = set(re.findall(r"(?:assign|reg) (n\d+)\b", "\n".join(lines))), set(re.findall(r"\bn\d+\b", "\n".join(lines)))
+    driven, used = set(re.findall(r"(?:assign|reg) (n\d+)\b", "\n".join(lines))), set(
+        re.findall(r"\bn\d+\b", "\n".join(lines)))
     parameters, ports = datasheet.parse(row.top)
-    settings = ",\n".join(f"    parameter integer {name} = {fpga.macro(dict(row.parameters).get(name, default))}" for name, default in parameters)
+    settings = ",\n".join(f"    parameter integer {name} = {fpga.macro(dict(row.parameters).get(name, default))}"
+                          for name, default in parameters)
     body, at = [], {"input": [], "output": []}
     for name, direction, width in ports:
         if name != "clk":
@@ -158,7 +167,8 @@ def chip(row, before, after):
         total = " + ".join(width for _, width in found)
         body.append(f"  wire [{total} - 1:0] port_{vectors[direction]};")
         joined = ", ".join(name for name, _ in reversed(found))
-        body.append(f"  assign port_in = {{{joined}}};" if direction == "input" else f"  assign {{{joined}}} = port_out;")
+        body.append(f"  assign port_in = {{{joined}}};" if direction == "input"
+                    else f"  assign {{{joined}}} = port_out;")
     for direction, vector in vectors.items():
         for i, bit in enumerate(before["netnames"][vector]["bits"]):
             net = number(bit)
@@ -167,28 +177,35 @@ def chip(row, before, after):
             elif direction == "output":
                 body.append(f"  assign port_out[{i}] = {f'n{net}' if net is not None else {'0': ZERO, '1': ONE}[bit]};")
     declared = "\n".join(f"    {direction} wire [{width} - 1:0] {name}," for name, direction, width in ports)
-    return (f'`include "cchip_defs.vh"\nmodule cchip_chip #(\n{settings}\n) (\n{declared[:-1]}\n);\n' + "\n".join(body) + f"\n  wire n{clock} = clk;\n"
-            + "\n".join(sorted(lines, key=lambda line: not line.startswith("reg"))) + "\nendmodule\n", len(netlist.cells))
+    return (f'`include "cchip_defs.vh"\nmodule cchip_chip #(\n{settings}\n) (\n{declared[:-1]}\n);\n' + "\n".join(body)
+            + f"\n  wire n{clock} = clk;\n"
+            + "\n".join(sorted(lines, key=lambda line: not line.startswith("reg"))) + "\nendmodule\n",
+            len(netlist.cells))
 
 
 def icarus(sources, folder):
-    run(folder / "rtl.iverilog.log", "iverilog", "-g2005", f"-I{ROOT / 'rtl/include'}", "-s", "bench_chip", "-o", folder / "rtl.vvp", BENCH, *sources)
+    run(folder / "rtl.iverilog.log", "iverilog", "-g2005", f"-I{ROOT / 'rtl/include'}", "-s", "bench_chip", "-o",
+        folder / "rtl.vvp", BENCH, *sources)
     return ["vvp", "-n", folder / "rtl.vvp"]
 
 
 def verilator(sources, folder, jobs):
     """Without optimisation of C++: compiling would cost more than it saves."""
     out = folder / "routed.dir"
-    run(folder / "routed.verilator.log", "verilator", "--cc", "--exe", "--main", "--timing", "-Wno-fatal", "-Wno-lint", "-Wno-style", "-O3",
-        "-fno-const-bit-op-tree", "--x-assign", "unique", "--x-initial", "unique", "--output-split", "20000", "--output-split-cfuncs", "2000",
+    run(folder / "routed.verilator.log", "verilator", "--cc", "--exe", "--main", "--timing", "-Wno-fatal", "-Wno-lint",
+        "-Wno-style", "-O3",
+        "-fno-const-bit-op-tree", "--x-assign", "unique", "--x-initial", "unique", "--output-split", "20000",
+        "--output-split-cfuncs", "2000",
         "--top-module", "bench_chip", "--Mdir", out, f"-I{ROOT / 'rtl/include'}", BENCH, *sources)
-    run(folder / "routed.make.log", "make", "-C", out, "-j", jobs, "-f", "Vbench_chip.mk", "OPT_FAST=-O0", "OPT_SLOW=-O0", "VM_PARALLEL_BUILDS=1")
+    run(folder / "routed.make.log", "make", "-C", out, "-j", jobs, "-f", "Vbench_chip.mk", "OPT_FAST=-O0",
+        "OPT_SLOW=-O0", "VM_PARALLEL_BUILDS=1")
     return [out / "Vbench_chip"]
 
 
 def ask(name, program, folder):
     """The last line of the bench: no mistake of it is hidden, the exit code of Verilator's is 0 always."""
-    return re.findall(r"^query=.*$", run(folder / f"{name}.log", *program, f"+memory={folder}/memory.hex", f"+records={folder}/records.hex"), re.M)[-1]
+    return re.findall(r"^query=.*$", run(folder / f"{name}.log", *program, f"+memory={folder}/memory.hex",
+                                         f"+records={folder}/records.hex"), re.M)[-1]
 
 
 def main():
@@ -217,13 +234,15 @@ def main():
         for name, value in row.parameters:
             text = re.sub(rf"(parameter integer {name} = )[^,\n]+", rf"\g<1>{value}", text, count=1)
         (folder / "rtl_chip.v").write_text(text)
-        rtl = ask("rtl", icarus([folder / "rtl_chip.v", *(path for path in sources if path != chip_file)], folder), folder)
+        rtl = ask("rtl", icarus([folder / "rtl_chip.v", *(path for path in sources if path != chip_file)], folder),
+                  folder)
         print(f"{row.name} rtl {rtl}", flush=True)
         before = json.loads((options.synthesis / "netlist.json").read_text())["modules"]["fpga_harness"]
         after = json.loads((options.routed / "routed.json").read_text())["modules"]["top"]
         text, cells = chip(row, before, after)
         (folder / "routed_chip.v").write_text(text)
-        routed = ask("routed", verilator([folder / "routed_chip.v", HERE / "DP16KD.v", HERE / "MULT18X18D.v"], folder, options.jobs), folder)
+        routed = ask("routed", verilator([folder / "routed_chip.v", HERE / "DP16KD.v", HERE / "MULT18X18D.v"], folder,
+                                         options.jobs), folder)
         print(f"{row.name} routed cells={cells} {routed}", flush=True)
     except (Failure, OSError) as failure:
         print(f"routed.py: {failure}", file=sys.stderr)

@@ -97,7 +97,8 @@ def bench(folder, shape, sources, *options):
     portable.write_text(PORTABLE.read_text().replace("module cchip_block_ram", "module portable_block_ram"))
     program = folder / "bench.vvp"
     parameters = (f"-Pbench_block_ram.{name}={value}" for name, value in zip(("WIDTH", "WORDS", "ADDR_W"), shape))
-    code, text = run(tool("iverilog"), "-g2005", f"-I{ROOT}/rtl/include", *options, *parameters, "-s", "bench_block_ram", "-o", program, BENCH,
+    code, text = run(tool("iverilog"), "-g2005", f"-I{ROOT}/rtl/include", *options, *parameters, "-s",
+                     "bench_block_ram", "-o", program, BENCH,
                      portable, *sources)
     return text if code else run("vvp", "-n", program, f"+seed={SEED}", f"+clocks={clocks(shape)}")[1]
 
@@ -130,7 +131,8 @@ class Shapes(Case):
         for shape, blocks in SHAPES.items():
             width, words, addr_w = shape
             with self.subTest(shape=shape):
-                code, text = run(tool("yosys"), "-q", "-p", f"read_verilog -I{ROOT}/rtl/include {LEAF} {BLOCK}; read_verilog -lib "
+                code, text = run(tool("yosys"), "-q", "-p",
+                                 f"read_verilog -I{ROOT}/rtl/include {LEAF} {BLOCK}; read_verilog -lib "
                                  f"+/ecp5/cells_bb.v; hierarchy -top cchip_block_ram -chparam WIDTH {width} "
                                  f"-chparam WORDS {words} -chparam ADDR_W {addr_w}; proc; flatten; "
                                  f"select -assert-count {blocks} t:DP16KD")

@@ -19,7 +19,8 @@ PAGE = ROOT / "docs" / "cpp" / "README.md"
 # Headers for users: what of cchip/internal/ they may bring in. Drivers speak the words of the hardware.
 BROUGHT = {"cchip.hpp": {"exact/intersection.hpp"}, "intersection.hpp": {"exact/intersection.hpp"},
            "check.hpp": {"certificate/exact_points.hpp"},
-           "driver": {"wire/axis.hpp", "wire/bitstream.hpp", "wire/definitions.hpp", "wire/line.hpp", "wire/pair.hpp", "wire/query.hpp"}}
+           "driver": {"wire/axis.hpp", "wire/bitstream.hpp", "wire/definitions.hpp", "wire/line.hpp", "wire/pair.hpp",
+                      "wire/query.hpp"}}
 
 
 def listed():
@@ -36,11 +37,13 @@ class Headers(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             source, rule = pathlib.Path(folder, "alone.cpp"), pathlib.Path(folder, "alone.d")
             source.write_text(content)
-            run = subprocess.run([COMPILER, "-std=c++17", *WARNINGS, "-fsyntax-only", "-MD", "-MF", rule, *(word for own in INCLUDES for word in ("-I", own)),
+            run = subprocess.run([COMPILER, "-std=c++17", *WARNINGS, "-fsyntax-only", "-MD", "-MF", rule,
+                                  *(word for own in INCLUDES for word in ("-I", own)),
                                   *(word for other in FOLDERS for word in ("-idirafter", other)), source],
                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
             self.assertEqual(run.returncode, 0, run.stdout)
-            return {name[len(f"{own}/"):] for name in rule.read_text().split() for own in INCLUDES if name.startswith(f"{own}/")}
+            return {name[len(f"{own}/"):] for name in rule.read_text().split()
+                    for own in INCLUDES if name.startswith(f"{own}/")}
 
     def test_table_is_the_public_interface(self):
         found = sorted(str(path.relative_to(own)) for own in INCLUDES for path in own.rglob("*.hpp"))
@@ -67,10 +70,12 @@ class Headers(unittest.TestCase):
 
     def test_texts_for_users_name_no_other(self):
         names = set(listed())
-        places = [ROOT / "README.md", *(ROOT / "docs" / "cpp").glob("*.md"), *(ROOT / "docs" / "hardware").glob("uio.md"),
+        places = [ROOT / "README.md", *(ROOT / "docs" / "cpp").glob("*.md"),
+                  *(ROOT / "docs" / "hardware").glob("uio.md"),
                   *(ROOT / "examples").rglob("*.[ch]pp"), *(ROOT / "tests" / "install").rglob("*.cpp")]
         included = {name: place for place in places
-                    for name in re.findall(r"^#include <(cchip/[^>]+)>", place.read_text(), re.M) if not name.startswith("cchip/rc/")}
+                    for name in re.findall(r"^#include <(cchip/[^>]+)>", place.read_text(), re.M)
+                    if not name.startswith("cchip/rc/")}
         self.assertGreater(len(included), 5)
         self.assertEqual({name: str(place) for name, place in included.items() if name not in names}, {})
 

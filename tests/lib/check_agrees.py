@@ -16,7 +16,8 @@ for line in output.split("\n"):  # U+2028 ends no line
         continue
     case = json.loads(line)
     poses = [float(x) for x in case["poses"]]
-    meshes = [([[float(x) for x in v] for v in vertices], faces, numbers) for vertices, faces, numbers in case["meshes"]]
+    meshes = [([[float(x) for x in v] for v in vertices], faces, numbers)
+              for vertices, faces, numbers in case["meshes"]]
     try:
         certificates = check.split(case["file"]) if "file" in case else [case["lines"]]
         for lines in certificates:

@@ -5,7 +5,8 @@ import pathlib
 import re
 import sys
 
-FORBIDDEN = re.compile(r"\b(strto(f|d|ld)|sto(f|d|ld)|atof|\w*scanf|setlocale)\b|std::locale\(\"|\bprintf\([^)]*%[^sdxXuzl%]*[aefgAEFG]")
+FORBIDDEN = re.compile(
+    r"\b(strto(f|d|ld)|sto(f|d|ld)|atof|\w*scanf|setlocale)\b|std::locale\(\"|\bprintf\([^)]*%[^sdxXuzl%]*[aefgAEFG]")
 
 
 def code(line):

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The LiteX core of the chip, in a system with its bus, memory and interrupt: what LiteX writes elaborates with the RTL. Its registers behind LiteX's
-converter from a bus of 128 bit, in Verilator: a write to any of the four words of a line arrives and is answered,
-words that are no register leave the others readable.
+"""The LiteX core of the chip, in a system with its bus, memory and interrupt: what LiteX writes elaborates with the
+RTL. Its registers behind LiteX's converter from a bus of 128 bit, in Verilator: a write to any of the four words of a
+line arrives and is answered, words that are no register leave the others readable.
 
 Runs in the Python of build/venv, where `make venv` installs LiteX; without it ends with code 77 (skipped).
 Environment: VERILATOR = command (default: found on PATH)."""
@@ -42,7 +42,9 @@ def system(parameters, standard="axi", width=128):
     return platform, made
 
 
-CHANNELS = {"aw": {"addr": 32}, "w": {"data": 128, "strb": 16}, "b": {}, "ar": {"addr": 32}, "r": {"data": 128, "resp": 2}}  # fields and their widths
+# fields and their widths
+CHANNELS = {"aw": {"addr": 32}, "w": {"data": 128, "strb": 16}, "b": {}, "ar": {"addr": 32},
+            "r": {"data": 128, "resp": 2}}
 
 
 def registers():
@@ -56,7 +58,8 @@ def registers():
 
     fields = {channel: {**widths, "valid": 1, "ready": 1} for channel, widths in CHANNELS.items()}
     platform = SimPlatform("SIM", [("sys_clk", 0, Pins(1)), ("sys_rst", 0, Pins(1)),
-                                   ("wide", 0, *(Subsignal(f"{channel}_{field}", Pins(width)) for channel, widths in fields.items()
+                                   ("wide", 0, *(Subsignal(f"{channel}_{field}", Pins(width))
+                                                 for channel, widths in fields.items()
                                                  for field, width in widths.items()))])
     made = LiteXModule()
     made.chip = CollisionChip(platform)
@@ -71,7 +74,8 @@ def registers():
     return platform, made
 
 
-# Writes each word of the line of record_base_low alone, reads the line. Then that of invalidate_first, whose last word is no register.
+# Writes each word of the line of record_base_low alone, reads the line. Then that of invalidate_first, whose last word
+# is no register.
 REGISTERS_BENCH = """`default_nettype none
 module bench;
   reg clk = 0, rst = 1, write = 0, read = 0;
@@ -144,13 +148,16 @@ class Registers(unittest.TestCase):
             top = re.search(r"(?s)^module cchip_chip .*?^\);\n", (ROOT / "rtl/chip/cchip_chip.v").read_text(), re.M)[0]
             ports = ["clk", "rst", *re.findall(r"^    (?:in|out)put +wire .*\b(s_axil_\w+)", top, re.M)]
             connections = ", ".join(f".{port}({port})" for port in ports)
-            (folder / "chip.v").write_text(f'`include "cchip_defs.vh"\n{top}  cchip_chip_regs u_regs ({connections});\nendmodule\n')
-            code, log = run(tool("verilator"), "--cc", "--exe", "--main", "--timing", "-Wno-fatal", "-Wno-lint", "-Wno-style",
+            (folder / "chip.v").write_text(f'`include "cchip_defs.vh"\n{top}  cchip_chip_regs u_regs ({connections});\n'
+                                           'endmodule\n')
+            code, log = run(tool("verilator"), "--cc", "--exe", "--main", "--timing", "-Wno-fatal", "-Wno-lint",
+                            "-Wno-style",
                             f"-I{ROOT}/rtl/include", "--top-module", "bench", "--Mdir", folder / "obj",
                             *(folder / f"{name}.v" for name in ("bench", "registers", "chip")),
                             ROOT / "rtl/regs/cchip_chip_regs.v")
             self.assertEqual(code, 0, log)
-            code, log = run("make", "-C", folder / "obj", "-f", "Vbench.mk", "OPT_FAST=-O0", "OPT_SLOW=-O0", "OPT_GLOBAL=-O0")
+            code, log = run("make", "-C", folder / "obj", "-f", "Vbench.mk", "OPT_FAST=-O0", "OPT_SLOW=-O0",
+                            "OPT_GLOBAL=-O0")
             self.assertEqual(code, 0, log)
             code, log = run(folder / "obj/Vbench")
         self.assertEqual(code, 0, log)
@@ -174,7 +181,8 @@ class Elaboration(unittest.TestCase):
             self.assertEqual(len(sources), len(set(sources)))
             includes = [f"-I{name}" for name in platform.verilog_include_paths]
             # outputs are left open on purpose, and other style of LiteX's own Verilog is not ours
-            code, log = run(tool("verilator"), "--lint-only", "-Wno-fatal", *includes, *sources, path, "--top-module", "system")
+            code, log = run(tool("verilator"), "--lint-only", "-Wno-fatal", *includes, *sources, path,
+                            "--top-module", "system")
             self.assertEqual(code, 0, log)
             self.assertNotRegex(log, "port connection|Parameter not found|%Error")
 
@@ -193,7 +201,8 @@ class Elaboration(unittest.TestCase):
         for standard in ("axi", "axi-lite", "wishbone"):
             for width in (32, 64):
                 with self.subTest(standard=standard, width=width):
-                    with self.assertRaisesRegex(ValueError, rf"^chip: the SoC's bus \({standard}\) has {width} bit, .*bus_data_width=128$"):
+                    with self.assertRaisesRegex(ValueError, rf"^chip: the SoC's bus \({standard}\) has {width} bit, "
+                                                            r".*bus_data_width=128$"):
                         system({}, standard, width)
 
 

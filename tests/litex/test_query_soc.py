@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A C program on a soft processor asks the chip one query, in a LiteX system that Verilator simulates: it prints the answer of the model.
+"""A C program on a soft processor asks the chip one query, in a LiteX system that Verilator simulates: it prints the
+answer of the model.
 
-Runs in the Python of build/venv (make venv); without LiteX, VexRiscv or a C compiler for RISC-V ends with code 77 (skipped)."""
+Runs in the Python of build/venv (make venv); without LiteX, VexRiscv or a C compiler for RISC-V ends with code 77
+(skipped)."""
 import os
 import pathlib
 import re
@@ -23,7 +25,8 @@ class Query(unittest.TestCase):
         flags, pairs = done >> 32 & 0xFFFFFFFF, done >> 96
         self.assertEqual(flags & 1, 1)
         with tempfile.TemporaryDirectory() as folder:
-            result = subprocess.run([PYTHON, "-B", ROOT / "scripts/litex/query_soc.py", VECTORS / "memory_chip.hex", folder],
+            result = subprocess.run([PYTHON, "-B", ROOT / "scripts/litex/query_soc.py",
+                                     VECTORS / "memory_chip.hex", folder],
                                     stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.assertEqual(result.returncode, 0, result.stdout)
         self.assertRegex(result.stdout, re.compile(
@@ -31,7 +34,8 @@ class Query(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    if any(not list(ROOT.glob(f"build/venv/lib/python3*/site-packages/{name}/__init__.py")) for name in ("litex", "pythondata_cpu_vexriscv")):
+    if any(not list(ROOT.glob(f"build/venv/lib/python3*/site-packages/{name}/__init__.py"))
+           for name in ("litex", "pythondata_cpu_vexriscv")):
         print("skipped: no LiteX or no VexRiscv in build/venv; run: make venv")
         sys.exit(77)
     if not shutil.which(os.environ.get("RISCV_GCC", "riscv64-unknown-elf-gcc")):

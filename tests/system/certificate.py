@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Certificates that `cchip collide --certificate` writes are accepted by the checker in Python, which shares no code with the
-program, and tell what the program tells; with another pose they are refused.
+"""Certificates that `cchip collide --certificate` writes are accepted by the checker in Python, which shares no code
+with the program, and tell what the program tells; with another pose they are refused.
 
 usage: certificate.py CCHIP FOLDER_OF_MESHES"""
 import pathlib
@@ -22,7 +22,8 @@ with tempfile.TemporaryDirectory() as folder:
     for options in ([], ["--contacts", "first"], ["--counts", "crossing"], ["--contacts", "first", "--relation"]):
         for move in ([0.5, 0.25, 0.125], [1, 0.75, 0.75], [1.0000000000000002, 0, 0], [0, 0, 0], [5, 0, 0]):
             command = [cchip, "collide", cube, cube, "--pose", ",".join(map(str, move)), "--format", "csv", *options]
-            answer = subprocess.run([*command, "--certificate", proof], check=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            answer = subprocess.run([*command, "--certificate", proof], check=True, stdout=subprocess.PIPE,
+                                    stderr=subprocess.PIPE, text=True)
             pose = identity[:]
             pose[3::4] = move
             lines = proof.read_text().splitlines()
@@ -31,7 +32,9 @@ with tempfile.TemporaryDirectory() as folder:
             told = [[int(x) for x in row[:2]] for row in rows]
             claimed = [c[:2] for c in claim["contacts"]]
             # the first contact that only touches is proved with all others
-            assert claimed == told if "first" not in options else (not told and not claimed) or told[0] in claimed, (command, claim)
+            assert claimed == told if "first" not in options else (not told
+                                                                   and not claimed) or told[0] in claimed, (
+                                                                       command, claim)
             pose[3] += 1
             try:
                 check.check([mesh, mesh], [float(x) for x in identity + pose], lines)

@@ -4,7 +4,8 @@
 
 usage: doc_examples.py [--update] <program> <text.md>
 An example is an indented line "$ command" and the indented lines below it: standard output and standard error.
-Examples run in the root of the repository, which holds the folder docs/ of <text.md>; --update writes the real output into the text.
+Examples run in the root of the repository, which holds the folder docs/ of <text.md>; --update writes the real output
+into the text.
 """
 import os
 import subprocess

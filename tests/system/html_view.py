@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The page of `cchip collide --html` in a browser: colours, a face that is clicked, a contact that is chosen, the section.
+"""The page of `cchip collide --html` in a browser: colours, a face that is clicked, a contact that is chosen, the
+section.
 
 usage: html_view.py CCHIP [PICTURE.png]   the picture is for the eye
 
@@ -13,7 +14,8 @@ import subprocess
 import sys
 import tempfile
 
-# A square whose middle is the middle of the picture, and a small face of the same mesh; a triangle that pierces the square.
+# A square whose middle is the middle of the picture, and a small face of the same mesh; a triangle that pierces the
+# square.
 A = "v -4 -4 -1\nv -3 -4 -1\nv -4 -4 1\nv -4 -4 0\nv 4 -4 0\nv 4 4 0\nv -4 4 0\nf 1 2 3\nf 4 5 6 7\n"
 B = "v 2 2 -1\nv 2 2 1\nv 2.5 2 1\nf 1 2 3\n"
 STEPS = """
@@ -81,7 +83,8 @@ window.addEventListener("load", () => {
 
 
 def browse(page, *options):
-    command = [BROWSER, "--headless", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+    command = [BROWSER, "--headless", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
+               "--enable-unsafe-swiftshader",
                "--hide-scrollbars", "--window-size=1200,800", "--virtual-time-budget=5000", *options, page.as_uri()]
     return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, timeout=120).stdout
 
@@ -150,7 +153,8 @@ def main():
 BROWSER = shutil.which("chromium")
 FAILED = []
 if __name__ == "__main__":
-    for missing, package in ((BROWSER is None, "chromium"), (not pathlib.Path("/usr/share/javascript/three").is_dir(), "libjs-three")):
+    for missing, package in ((BROWSER is None, "chromium"),
+                             (not pathlib.Path("/usr/share/javascript/three").is_dir(), "libjs-three")):
         if missing:
             print(f"skipped: install Debian's package {package}")
             sys.exit(77)

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Completion and man pages that scripts/shell_files.py makes: bash completes each command and each option of the help, and the
-values and files of options; the pages have no error for man and mandoc. Skipped (77) without help2man or mandoc, after the rest.
+"""Completion and man pages that scripts/shell_files.py makes: bash completes each command and each option of the help,
+and the values and files of options; the pages have no error for man and mandoc. Skipped (77) without help2man or
+mandoc, after the rest.
 
 usage: shell_files.py CCHIP"""
 import pathlib
@@ -54,7 +55,8 @@ with tempfile.TemporaryDirectory() as temporary:
 
     pages = sorted((folder / "man").glob("*.1"))
     if help2man:
-        expect(sorted(page.stem for page in pages), sorted(["cchip", *(f"cchip-{name}" for name in names if name not in ("help", "version"))]), "pages")
+        expect(sorted(page.stem for page in pages),
+               sorted(["cchip", *(f"cchip-{name}" for name in names if name not in ("help", "version"))]), "pages")
     for page in pages:
         # comparing words: the page says each option of the help
         shown = re.sub(r"\\[-&]", "-", page.read_text())
@@ -62,7 +64,8 @@ with tempfile.TemporaryDirectory() as temporary:
         for option in re.findall(r"^  (?:-\w,)?(--[\w-]+)", text, re.M):
             expect(option in re.sub(r"\\f[BIRP]", "", shown), True, f"{page.name}: {option}")
         if shutil.which("man"):
-            found = subprocess.run(["man", "--warnings", "-l", page], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            found = subprocess.run(["man", "--warnings", "-l", page], stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
             expect((found.returncode, found.stderr), (0, ""), f"man {page.name}")
             expect("OPTIONS" in found.stdout, True, f"{page.name}: options")
         if shutil.which("mandoc"):

@@ -19,7 +19,8 @@ from tools import run, tool  # noqa: E402
 HERE = pathlib.Path(__file__).resolve().parent
 REGION = "cchip_pr_region"
 STATIC = "scripts/vendor/cchip_pr_static.v"
-SCRIPTS = sorted(path for folder in ("vendor", "vivado", "quartus") for path in (ROOT / "scripts" / folder).glob("*.tcl"))
+SCRIPTS = sorted(path for folder in ("vendor", "vivado", "quartus")
+                 for path in (ROOT / "scripts" / folder).glob("*.tcl"))
 
 
 def files():
@@ -41,7 +42,8 @@ def ports(tops, define=""):
         script = [f"read_verilog -DSYNTHESIS {define} -I{ROOT}/rtl/include {sources}", "design -save all"]
         for i, (top, parameters) in enumerate(tops):
             values = "".join(f" -chparam {name} {value}" for name, value in parameters.items())
-            script += ["design -load all", f"hierarchy -check -top {top}{values}", "delete p:*", f"write_json {folder}/{i}"]
+            script += ["design -load all", f"hierarchy -check -top {top}{values}", "delete p:*",
+                       f"write_json {folder}/{i}"]
         code, text = run(tool("yosys"), "-q", "-p", "; ".join(script))
         if code:
             raise AssertionError(text)
@@ -125,7 +127,8 @@ class Static(unittest.TestCase):
         sources = " ".join(str(name) for name in [*files(), ROOT / STATIC])
         self.assertEqual(run(tool("yosys"), "-q", "-p",
                              f"read_verilog -DSYNTHESIS -DCCHIP_PR_BLACK_BOX -I{ROOT}/rtl/include {sources};"
-                             " hierarchy -check -top cchip_pr_static; proc; check -assert; select -assert-none t:$dlatch;"
+                             " hierarchy -check -top cchip_pr_static; proc; check -assert; select -assert-none "
+                             "t:$dlatch;"
                              f" select -assert-count 1 t:{REGION}"), (0, ""))
 
 
@@ -137,7 +140,8 @@ class Memories(unittest.TestCase):
         lut = re.search(r"`define CCHIP_LUT_RAM (.*)", (ROOT / "rtl/include/cchip_assert.vh").read_text())[1]
         for path in files():
             self.assertNotIn('"distributed"', path.read_text(), f"{path.name}: CCHIP_LUT_RAM says it")
-            for attributes in re.findall(r"\(\* *(ram_?style.*?) *\*\)", path.read_text().replace("`CCHIP_LUT_RAM", lut)):
+            for attributes in re.findall(r"\(\* *(ram_?style.*?) *\*\)",
+                                         path.read_text().replace("`CCHIP_LUT_RAM", lut)):
                 values = dict(re.findall(r'(\w+) = "([^"]*)"', attributes))
                 self.assertEqual(values.get("ramstyle"), kinds[values["ram_style"]], f"{path.name}: {attributes}")
                 found += 1
@@ -146,9 +150,11 @@ class Memories(unittest.TestCase):
     def test_memories_of_luts_can_be_switched_off(self):
         for define, memories in (("", 1), ("-DCCHIP_LUT_RAM=", 0)):
             with self.subTest(define=define):
-                self.assertEqual(run(tool("yosys"), "-q", "-p", f"read_verilog {define} -I{ROOT}/rtl/include {ROOT}/rtl/common/cchip_ram.v; "
+                self.assertEqual(run(tool("yosys"), "-q", "-p",
+                                     f"read_verilog {define} -I{ROOT}/rtl/include {ROOT}/rtl/common/cchip_ram.v; "
                                      "hierarchy -check -top cchip_ram; proc; memory -nomap; "
-                                     f"select -assert-count {memories} t:$mem_v2 a:ram_style=distributed %i; select -assert-count 1 t:$mem_v2"), (0, ""))
+                                     f"select -assert-count {memories} t:$mem_v2 a:ram_style=distributed %i; select "
+                                     "-assert-count 1 t:$mem_v2"), (0, ""))
 
     def test_families_without_memories_of_luts(self):
         """Yosys 0.70 maps such a memory for GateMate only where the macro is empty."""
@@ -158,14 +164,16 @@ class Memories(unittest.TestCase):
         for define, code in (("", 1), ("-DCCHIP_LUT_RAM=", 0)):
             with self.subTest(define=define):
                 got, text = run(str(newest), "-q", "-p", f"read_verilog {define} -Irtl/include rtl/common/cchip_ram.v; "
-                                "synth_gatemate -top cchip_ram -run begin:map_gates; select -assert-none t:$mem_v2", cwd=ROOT)
+                                "synth_gatemate -top cchip_ram -run begin:map_gates; select -assert-none t:$mem_v2",
+                                cwd=ROOT)
                 self.assertEqual(got, code, text)
 
     def test_mixed_widths_can_be_switched_off(self):
         for define, memories in (("", 1), ("-DCCHIP_MIXED_WIDTH=0", 4), ("-DCCHIP_MIXED_WIDTH=1", 1),
                                  ("-DALTERA_RESERVED_QIS", 4)):
             with self.subTest(define=define):
-                self.assertEqual(run(tool("yosys"), "-q", "-p", f"read_verilog {define} -I{ROOT}/rtl/include {ROOT}/rtl/common/cchip_block_ram.v; "
+                self.assertEqual(run(tool("yosys"), "-q", "-p",
+                                     f"read_verilog {define} -I{ROOT}/rtl/include {ROOT}/rtl/common/cchip_block_ram.v; "
                                      "hierarchy -check -top cchip_block_ram -chparam WORDS 4; proc; memory -nomap; "
                                      f"select -assert-count {memories} t:$mem_v2"), (0, ""))
 

@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """How a campaign in shards scales on this machine: one job at a time and two, in turns, beside one piece.
 
-usage: speed.py [PAIRS SHARDS]      (default 2000000 pairs in 20 shards; environment: CCHIP_BIN, the folder with cchip_campaign)
+usage: speed.py [PAIRS SHARDS]      (default 2000000 pairs in 20 shards; environment: CCHIP_BIN, the folder with
+                                    cchip_campaign)
 
-The last line has the seconds on the wall, medians of three, and their ratios; load is that of the machine at the end."""
+The last line has the seconds on the wall, medians of three, and their ratios; load is that of the machine at the
+end."""
 import os
 import pathlib
 import statistics
@@ -25,13 +27,15 @@ def timed(*command):
 
 def sharded(cores, pairs, shards):
     with tempfile.TemporaryDirectory() as folder:
-        return timed("build/workflow/bin/snakemake", "--snakefile", "workflow/Snakefile", "--profile", "workflow/profiles/local", "--cores", str(cores),
+        return timed("build/workflow/bin/snakemake", "--snakefile", "workflow/Snakefile", "--profile",
+                     "workflow/profiles/local", "--cores", str(cores),
                      "--config", "kind=random", f"amount={pairs}", f"shards={shards}", f"bin={BIN}", f"folder={folder}")
 
 
 def piece(pairs, shards):
     with tempfile.TemporaryDirectory() as folder:
-        return timed(sys.executable, "workflow/campaign.py", "piece", "--kind", "random", "--amount", str(pairs), "--shards", str(shards), "--bin", BIN,
+        return timed(sys.executable, "workflow/campaign.py", "piece", "--kind", "random", "--amount", str(pairs),
+                     "--shards", str(shards), "--bin", BIN,
                      "--output", f"{folder}/table.csv")
 
 

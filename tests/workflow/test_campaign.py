@@ -3,7 +3,8 @@
 """A campaign in shards, with shards killed in the middle, has the counts of the campaign in one piece.
 
 usage: test_campaign.py [Merge|Local|Slurm|Sweep|Dask]      environment: CCHIP_BIN, the folder with cchip_campaign
-Sweep: the table of scripts/run fpga-sweep from made-up clocks. Dask: scripts/run test-dask, with fewer queries. Merge and Sweep need neither Snakemake nor Dask. Exit codes: 0 passed, 1 failed, 77 skipped."""
+Sweep: the table of scripts/run fpga-sweep from made-up clocks. Dask: scripts/run test-dask, with fewer queries. Merge
+and Sweep need neither Snakemake nor Dask. Exit codes: 0 passed, 1 failed, 77 skipped."""
 import json
 import os
 import pathlib
@@ -48,12 +49,14 @@ class Case(unittest.TestCase):
         folder = self.folder / "bin"
         folder.mkdir()
         (self.folder / "pids").mkdir()
-        (folder / "cchip_campaign").write_text(f'#!/bin/sh\n: > "{self.folder}/pids/$$"\nexec "{BIN}/cchip_campaign" "$@"\n')
+        (folder / "cchip_campaign").write_text(
+            f'#!/bin/sh\n: > "{self.folder}/pids/$$"\nexec "{BIN}/cchip_campaign" "$@"\n')
         (folder / "cchip_campaign").chmod(0o755)
         return folder
 
     def snakemake(self, profile, kind, amount, shards, before=()):
-        return [*map(str, before), str(SNAKEMAKE), "--snakefile", "workflow/Snakefile", "--profile", f"workflow/profiles/{profile}",
+        return [*map(str, before), str(SNAKEMAKE), "--snakefile", "workflow/Snakefile", "--profile",
+                f"workflow/profiles/{profile}",
                 "--cores", "2", "--config", f"kind={kind}", f"amount={amount}", f"shards={shards}", "seed=5",
                 f"bin={self.folder}/bin", f"folder={self.folder}"]
 
@@ -77,7 +80,8 @@ class Merge(Case):
 
     def test_kinds(self):
         for kind, amount, shards in (("random", PART + 100, 2), ("grid", PART + 100, 2), ("relation", PART + 100, 2),
-                                     ("certainty", PART + 100, 2), ("boxes", PART + 100, 2), ("swaps", 100, 2), ("chip", 20, 2), ("faults", 20, 2)):
+                                     ("certainty", PART + 100, 2), ("boxes", PART + 100, 2), ("swaps", 100, 2),
+                                     ("chip", 20, 2), ("faults", 20, 2)):
             program = {"swaps": "cchip_swaps", "chip": "cchip_chip_campaign", "faults": "cchip_chip_campaign"}.get(kind)
             if program and not (BIN / program).exists():
                 continue
@@ -91,7 +95,8 @@ class Merge(Case):
         settings, files = self.shards("relation", 2 * PART, 2)
         text = files[1].read_text()
         for wrong, why in ((text[:-40], "relation1.json"), (text.replace('"seed": 5', '"seed": 6'), "seed is 6"),
-                           (files[0].read_text(), "shard 0 is in"), (text.replace('"program": "', '"program": "0'), "builds"),
+                           (files[0].read_text(), "shard 0 is in"),
+                           (text.replace('"program": "', '"program": "0'), "builds"),
                            (text.replace("--pairs", "--coord-w"), "other commands")):
             with self.subTest(why):
                 files[1].write_text(wrong)
@@ -154,9 +159,11 @@ class Slurm(Case):
         """Under a real Slurm on loopback; this script calls itself in it, as Killer."""
         kind, amount, shards = "relation", 8 * PART - 1000, 8
         self.programs()
-        command = self.snakemake("slurm", kind, amount, shards, [ROOT / "tests/workflow/slurm.sh", self.folder / "slurm",
-                                                                sys.executable, "-B", __file__, "--kill"])
-        made = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=560)
+        command = self.snakemake("slurm", kind, amount, shards,
+                                 [ROOT / "tests/workflow/slurm.sh", self.folder / "slurm",
+                                 sys.executable, "-B", __file__, "--kill"])
+        made = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                              timeout=560)
         if made.returncode == 77:
             self.skipTest(made.stdout)
         print(*(line for line in made.stdout.splitlines() if re.match(r"killed|Trying|pairs=", line)), sep="\n")
@@ -174,17 +181,21 @@ class Sweep(Case):
         """A netlist that is there, and a program in the place of nextpnr that notes what it was asked."""
         tool = self.folder / "nextpnr"
         tool.write_text("#!/bin/sh\n[ $# = 1 ] && echo 1 && exit\necho \"$@\" > %s/asked\n"
-                        "while [ $# -gt 1 ]; do [ \"$1\" = --report ] && echo '{\"fmax\": {\"clk\": {\"achieved\": 101.5}}}' > \"$2\"; shift; done\n" % self.folder)
+                        "while [ $# -gt 1 ]; do [ \"$1\" = --report ] && echo '{\"fmax\": {\"clk\": {\"achieved\": "
+                        "101.5}}}' > \"$2\"; shift; done\n" % self.folder)
         tool.chmod(0o755)
         (ROOT / "build/fpga").mkdir(parents=True, exist_ok=True)
         made = tempfile.TemporaryDirectory(dir=ROOT / "build/fpga", prefix="sweep-")
         self.addCleanup(made.cleanup)
         (pathlib.Path(made.name) / "netlist.json").write_text("{}")
-        (self.folder / "synth.json").write_text(json.dumps({"row": "tri_tri", "synthesis": pathlib.Path(made.name).name}))
+        (self.folder / "synth.json").write_text(
+            json.dumps({"row": "tri_tri", "synthesis": pathlib.Path(made.name).name}))
         before = set(ROOT.glob("build/fpga/tri_tri.seed3-*"))
         self.addCleanup(lambda: [shutil.rmtree(left) for left in set(ROOT.glob("build/fpga/tri_tri.seed3-*")) - before])
-        done = subprocess.run([sys.executable, "-B", ROOT / "workflow/fpga_sweep.py", "place", "tri_tri", "3", self.folder / "synth.json", self.folder / "placed.json",
-                               f"--nextpnr={tool}", "--freq=125"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        done = subprocess.run([sys.executable, "-B", ROOT / "workflow/fpga_sweep.py", "place", "tri_tri", "3",
+                               self.folder / "synth.json", self.folder / "placed.json",
+                               f"--nextpnr={tool}", "--freq=125"], stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True)
         self.assertEqual(done.returncode, 0, done.stdout)
         placed = json.loads((self.folder / "placed.json").read_text())
         self.assertEqual((placed["row"], placed["seed"], placed["fmax_mhz"]), ("tri_tri", 3, 101.5))
@@ -195,17 +206,21 @@ class Sweep(Case):
         for number, (row, seed, clock) in enumerate(shards):
             files.append(self.folder / f"{number}.json")
             files[-1].write_text(json.dumps({"row": row, "synthesis": "", "seed": seed, "fmax_mhz": clock}))
-        return subprocess.run([sys.executable, "-B", ROOT / "workflow/fpga_sweep.py", "merge", self.folder / "t.csv", *files, "--seeds", str(seeds),
+        return subprocess.run([sys.executable, "-B", ROOT / "workflow/fpga_sweep.py", "merge", self.folder / "t.csv",
+                               *files, "--seeds", str(seeds),
                                "--parameter", "SUBSTAGES"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
     def test_table(self):
-        made = self.merge([("tri_tri", 1, 100.0), ("tri_tri_substages6", 1, 90.0), ("tri_tri", 2, 110.5), ("tri_tri_substages6", 2, 80.0)])
+        made = self.merge([("tri_tri", 1, 100.0), ("tri_tri_substages6", 1, 90.0), ("tri_tri", 2, 110.5),
+                           ("tri_tri_substages6", 2, 80.0)])
         self.assertEqual(made.returncode, 0, made.stdout)
         lines = (self.folder / "t.csv").read_text().splitlines()[1:]
-        self.assertEqual(lines, ["tri_tri,SUBSTAGES,10,2,110.5,105.25,100.0", "tri_tri_substages6,SUBSTAGES,6,2,90.0,85.0,80.0"])
+        self.assertEqual(lines, ["tri_tri,SUBSTAGES,10,2,110.5,105.25,100.0",
+                                 "tri_tri_substages6,SUBSTAGES,6,2,90.0,85.0,80.0"])
 
     def test_refused(self):
-        for shards, why in (([("tri_tri", 1, 1.0)], "not one result for each"), ([("tri_tri", 1, 1.0)] * 2, "there twice")):
+        for shards, why in (([("tri_tri", 1, 1.0)], "not one result for each"),
+                            ([("tri_tri", 1, 1.0)] * 2, "there twice")):
             made = self.merge(shards)
             self.assertEqual((made.returncode, why in made.stdout), (1, True), made.stdout)
         self.assertFalse((self.folder / "t.csv").exists())
@@ -214,7 +229,8 @@ class Sweep(Case):
 @unittest.skipUnless((ROOT / "build/dask/installed").exists(), "no build/dask: scripts/run test-dask")
 class Dask(unittest.TestCase):
     def test_workers_killed(self):
-        made = subprocess.run([ROOT / "build/dask/bin/python", "-B", ROOT / "lib/python/tests/over_dask.py", "50000"], stdout=subprocess.PIPE,
+        made = subprocess.run([ROOT / "build/dask/bin/python", "-B", ROOT / "lib/python/tests/over_dask.py", "50000"],
+                              stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, text=True, timeout=500)
         self.assertEqual(made.returncode, 0, made.stdout)
         self.assertRegex(made.stdout.splitlines()[-1], r"^queries=[0-9]+ differing=0 lost=0$")
@@ -225,7 +241,8 @@ def run_and_kill(command):
     running = subprocess.Popen(command)
     killed = False
     while running.poll() is None:
-        jobs = subprocess.run(["squeue", "--noheader", "--states=RUNNING", "--format=%i"], stdout=subprocess.PIPE, text=True).stdout.split()
+        jobs = subprocess.run(["squeue", "--noheader", "--states=RUNNING", "--format=%i"], stdout=subprocess.PIPE,
+                              text=True).stdout.split()
         late = [job for job in jobs if int(job) >= 3]
         if late and not killed:
             killed = subprocess.run(["scancel", "--full", "--signal=KILL", late[0]]).returncode == 0

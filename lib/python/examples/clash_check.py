@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which parts in a folder clash? Every mesh file is a part, a solid in the coordinates of the assembly.
 
-Prints a line for each pair of parts that meet: their files, and touching, overlapping, a_in_b, b_in_a or equal. A part that is
-not closed is a surface: touching or crossing. All but touching are clashes.
-Exit codes: 0 no two parts clash, 1 some do, 2 wrong arguments or fewer than two mesh files, 3 not all could be judged: a file
-cannot be used and was left out, or two parts show no clash though one may lie inside the other: one is not closed, or faces of
-one cross or lie on each other, so that its shells overlap and its solid may not be the one that was meant. With --inside nonzero
-space that two shells of a part share is inside, and that judges it."""
+Prints a line for each pair of parts that meet: their files, and touching, overlapping, a_in_b, b_in_a or equal. A part
+that is not closed is a surface: touching or crossing. All but touching are clashes.
+Exit codes: 0 no two parts clash, 1 some do, 2 wrong arguments or fewer than two mesh files, 3 not all could be judged:
+a file cannot be used and was left out, or two parts show no clash though one may lie inside the other: one is not
+closed, or faces of one cross or lie on each other, so that its shells overlap and its solid may not be the one that was
+meant. With --inside nonzero space that two shells of a part share is inside, and that judges it."""
 import argparse
 import pathlib
 import sys
@@ -43,7 +43,8 @@ def relate(a, b, inside):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", metavar="FOLDER", type=pathlib.Path)
-    parser.add_argument("--inside", choices=("odd", "nonzero"), default="odd", help="inside is what a part encloses an odd number of times (default), or winds around")
+    parser.add_argument("--inside", choices=("odd", "nonzero"), default="odd",
+                        help="inside is what a part encloses an odd number of times (default), or winds around")
     options = parser.parse_args()
     folder = options.folder
     if not folder.is_dir():

@@ -2,14 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which of very many parts clash? Like clash_check.py, over a Dask cluster.
 
-Every mesh file of FOLDER is a part, in the coordinates of the assembly. A sweep over their boxes finds the pairs that may
-touch, the workers test them. RESULT gets a line for each pair that touches, lies one inside the other or is at most the
-clearance apart: a, b, relation and face pairs in contact of the surfaces, solids (how they lie to each other as solids;
-empty if one of them is not closed), distance of the surfaces (empty above the clearance). It is Parquet if its name ends in .parquet and pyarrow is
-there, CSV otherwise. SCHEDULER is the address of a Dask scheduler; without it two workers are started here. Needs
-collide_dask.py beside it, collisionchip, distributed and trimesh (which reads the files).
-Exit codes: 0 no two parts cross or share volume, 1 some do, 2 wrong arguments, fewer than two mesh files, no scheduler or no place for RESULT, 3 some files cannot be
-used and were left out, or no two parts clash but shells of one overlap, so that its solid may not be the one that was meant."""
+Every mesh file of FOLDER is a part, in the coordinates of the assembly. A sweep over their boxes finds the pairs that
+may touch, the workers test them. RESULT gets a line for each pair that touches, lies one inside the other or is at most
+the clearance apart: a, b, relation and face pairs in contact of the surfaces, solids (how they lie to each other as
+solids; empty if one of them is not closed), distance of the surfaces (empty above the clearance). It is Parquet if its
+name ends in .parquet and pyarrow is there, CSV otherwise. SCHEDULER is the address of a Dask scheduler; without it two
+workers are started here. Needs collide_dask.py beside it, collisionchip, distributed and trimesh (which reads the
+files).
+Exit codes: 0 no two parts cross or share volume, 1 some do, 2 wrong arguments, fewer than two mesh files, no scheduler
+or no place for RESULT, 3 some files cannot be used and were left out, or no two parts clash but shells of one overlap,
+so that its solid may not be the one that was meant."""
 import argparse
 import csv
 import html
@@ -28,7 +30,8 @@ COLUMNS = ("a", "b", "relation", "contacts", "solids", "distance")
 
 
 def box_pairs(least, greatest, clearance=0.0):
-    """Pairs of boxes that overlap, touch or are at most so far apart along each axis, by a sweep along x; least, greatest: (n, 3) corners."""
+    """Pairs of boxes that overlap, touch or are at most so far apart along each axis, by a sweep along x; least,
+    greatest: (n, 3) corners."""
     greatest = np.nextafter(greatest + clearance, math.inf) if clearance else greatest
     order = np.argsort(least[:, 0], kind="stable")
     starts = least[order, 0]
@@ -68,7 +71,8 @@ def in_words(relation, solids, distance):
 
 
 def report(path, lines, files, open_parts, overlaps):
-    """A page with a table of the pairs; those whose faces meet lead to a page of their own, on which both parts can be turned and cut."""
+    """A page with a table of the pairs; those whose faces meet lead to a page of their own, on which both parts can be
+    turned and cut."""
     pages = path.with_name(path.stem + "_pairs")
     by_name = {file.name: file for file in files}
     rows = []
@@ -88,7 +92,8 @@ def report(path, lines, files, open_parts, overlaps):
                     f"<h1>{len(files)} parts, {len(lines)} pairs</h1>"
                     "<table border><tr><th>a<th>b<th>what<th>face pairs<th>distance" + "".join(rows) + "</table>"
                     + (f"<h2>Not closed: surfaces, not solids</h2><ul>{notes}</ul>" if notes else "")
-                    + (f"<h2>Shells overlap: try --inside nonzero</h2><ul>{doubts}</ul>" if doubts else "") + "</html>\n", encoding="utf-8")
+                    + (f"<h2>Shells overlap: try --inside nonzero</h2><ul>{doubts}</ul>" if doubts else "")
+                    + "</html>\n", encoding="utf-8")
 
 
 def load(files):
@@ -111,9 +116,11 @@ def main():
     parser.add_argument("result", metavar="RESULT", type=pathlib.Path)
     parser.add_argument("scheduler", metavar="SCHEDULER", nargs="?")
     parser.add_argument("--clearance", type=float, default=0.0, help="list pairs at most so far apart, too (default 0)")
-    parser.add_argument("--inside", choices=("odd", "nonzero"), default="odd", help="inside is what a part encloses an odd number of times (default), or winds around")
+    parser.add_argument("--inside", choices=("odd", "nonzero"), default="odd",
+                        help="inside is what a part encloses an odd number of times (default), or winds around")
     parser.add_argument("--report", metavar="PAGE.html", type=pathlib.Path,
-                        help="write a page with the pairs, too; beside it a folder with a page for each pair whose faces meet")
+                        help="write a page with the pairs, too; beside it a folder with a page for each pair whose "
+                             "faces meet")
     options = parser.parse_args()
     folder, scheduler = options.folder, options.scheduler
     if not (0 <= options.clearance < math.inf):
@@ -131,19 +138,24 @@ def main():
     bounds = np.array([part.bounds for part in parts])
     pairs = [(int(a), int(b)) for a, b in box_pairs(bounds[:, 0], bounds[:, 1], options.clearance)]
     listed, overlaps = [], {}
-    with (Client(scheduler) if scheduler else Client(LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None))) as client:
+    with (Client(scheduler) if scheduler
+          else Client(LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None))) as client:
         done = 0
-        for a, b, relation, contacts, solids, distance, found in relate_pairs(client, parts, pairs, clearance=options.clearance, inside=options.inside):
+        for a, b, relation, contacts, solids, distance, found in relate_pairs(
+            client, parts, pairs, clearance=options.clearance, inside=options.inside):
             done += 1
             overlaps.update((files[part].name, overlap) for part, overlap in zip((a, b), found) if overlap)
             if sys.stderr.isatty() or done % 1000 == 0 or done == len(pairs):
-                print(f"\r{done} of {len(pairs)} pairs", end="" if done < len(pairs) else "\n", file=sys.stderr, flush=True)
+                print(f"\r{done} of {len(pairs)} pairs", end="" if done < len(pairs) else "\n",
+                      file=sys.stderr, flush=True)
             if relation != "apart" or solids not in (None, "disjoint") or distance <= options.clearance:
-                listed.append((files[a].name, files[b].name, relation, contacts, solids or "", distance if distance <= options.clearance else None))
+                listed.append((files[a].name, files[b].name, relation, contacts, solids or "",
+                               distance if distance <= options.clearance else None))
         if not scheduler:
             client.cluster.close()
     for name, (i, j) in sorted(overlaps.items()):
-        print(f"{name}: faces {i} and {j} cross or lie on each other, so its shells overlap: try --inside nonzero", file=sys.stderr)
+        print(f"{name}: faces {i} and {j} cross or lie on each other, so its shells overlap: try --inside nonzero",
+              file=sys.stderr)
     listed.sort()
     write(options.result, listed)
     if options.report:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""collide_many() and relations of pairs over a Dask cluster: copy this file beside your program, import it, pass a distributed.Client.
+"""collide_many() and relations of pairs over a Dask cluster: copy this file beside your program, import it, pass a
+distributed.Client.
 
-Scheduler and workers need collisionchip and distributed, but not this file: it is sent to them, once to each cluster. Meshes are
-(vertices, faces). They are sent once to each worker that needs them; the worker builds the Object once and
+Scheduler and workers need collisionchip and distributed, but not this file: it is sent to them, once to each cluster.
+Meshes are (vertices, faces). They are sent once to each worker that needs them; the worker builds the Object once and
 keeps the most recent ones. Chunks of a worker that dies are computed again by the others, the results are the same.
 docs/develop/scaling.md says when this is the right tool."""
 import collections
@@ -62,7 +63,8 @@ def _relate(a, b, clearance, inside):
         word = solids(x, None, y, None, inside=inside)  # where shells overlap it warns, in the worker's log
     apart = 0.0 if result else distance(x, None, y, None, stop_above=clearance).upper
     in_doubt = word is not None and inside == "odd"
-    return result.relation, len(result.contacts), word, apart, tuple(part.shell_overlap if in_doubt else None for part in (x, y))
+    return result.relation, len(result.contacts), word, apart, tuple(part.shell_overlap if in_doubt else None
+                                                                     for part in (x, y))
 
 
 def _send_this_file(client):
@@ -91,7 +93,8 @@ def _run(client, meshes, jobs, broadcast, retries):
             if future.status == "finished":
                 try:
                     result = future.result()
-                except Exception:  # gone between the two lines, with its worker: what a function raises is an error above
+                # gone between the two lines, with its worker: what a function raises is an error above
+                except Exception:
                     continue
                 left.pop(futures[future])
                 yield futures[future], result
@@ -130,18 +133,21 @@ def collide_many(client, a, poses_a, b, poses_b, *, contacts=False, chunk=16384,
 
 
 def relate_pairs(client, meshes, pairs, *, clearance=0.0, inside="odd", retries=3):
-    """Yields (a, b, relation, contacts, solids, distance, overlaps) for pairs of meshes in place, as each is done; a and b are numbers of meshes.
+    """Yields (a, b, relation, contacts, solids, distance, overlaps) for pairs of meshes in place, as each is done; a
+    and b are numbers of meshes.
 
-    relation: of the surfaces; contacts: how many face pairs touch; solids: the word of collisionchip.solids(), None unless both meshes are
-    closed and, with inside="nonzero", their faces all the same way round; distance: of the surfaces, inf if it is greater than clearance;
-    overlaps: Object.shell_overlap of both, None if the word does not depend on it. A mesh goes only to workers that need it."""
+    relation: of the surfaces; contacts: how many face pairs touch; solids: the word of collisionchip.solids(), None
+    unless both meshes are closed and, with inside="nonzero", their faces all the same way round; distance: of the
+    surfaces, inf if it is greater than clearance; overlaps: Object.shell_overlap of both, None if the word does not
+    depend on it. A mesh goes only to workers that need it."""
     pairs = list(pairs)
-    for number, result in _run(client, meshes, [(_relate, pair, (clearance, inside)) for pair in pairs], False, retries):
+    for number, result in _run(client, meshes, [(_relate, pair, (clearance, inside)) for pair in pairs],
+                               False, retries):
         yield (*pairs[number], *result)
 
 
-# A scheduler or worker in this process loads its copy of this file in the place of this module. What the module had stays: tasks
-# name its functions, pickle sends only the very same ones, and the copy of the file is deleted later.
+# A scheduler or worker in this process loads its copy of this file in the place of this module. What the module had
+# stays: tasks name its functions, pickle sends only the very same ones, and the copy of the file is deleted later.
 _digest = hashlib.sha256(FILE.read_bytes()).digest()
 if globals().get("_first", {}).get("_digest") == _digest:
     globals().update(_first)

@@ -4,9 +4,10 @@
 
 usage: bench.py
 
-Batches: two tori of 3,072 triangles in 10,000 pairs of poses, collide_many() against a loop over fcl.collide(), each with the
-first contact; with one thread and with all cores. Scenes: frames of 100 tori of 192 triangles, CollisionManager against
-trimesh's. Medians of five alternating passes, wall-clock time. Exit code 1 if an answer differs."""
+Batches: two tori of 3,072 triangles in 10,000 pairs of poses, collide_many() against a loop over fcl.collide(), each
+with the first contact; with one thread and with all cores. Scenes: frames of 100 tori of 192 triangles,
+CollisionManager against trimesh's. Medians of five alternating passes, wall-clock time. Exit code 1 if an answer
+differs."""
 import os
 import statistics
 import sys

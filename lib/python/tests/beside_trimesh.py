@@ -4,9 +4,10 @@
 
 usage: beside_trimesh.py [SCENES]      (default 2000; CCHIP_SEED repeats a run)
 
-Compares the names of in_collision_internal(), in_collision_single() and in_collision_other(), and the faces in contact of
-pairs of meshes that are not convex. Where the two differ, integers of any size decide over all pairs of faces. In half of
-the scenes all coordinates are multiples of 1/4, so that faces are flush. Exit code 1 if collisionchip was wrong once."""
+Compares the names of in_collision_internal(), in_collision_single() and in_collision_other(), and the faces in contact
+of pairs of meshes that are not convex. Where the two differ, integers of any size decide over all pairs of faces. In
+half of the scenes all coordinates are multiples of 1/4, so that faces are flush. Exit code 1 if collisionchip was wrong
+once."""
 import collections
 import sys
 
@@ -119,7 +120,8 @@ def main():
         comparison.names(our_names, their_names, placed)
     count = comparison.count
     print(f"seed={SEED} pairs={count['pairs']} faces={count['faces']}")
-    print(f"trimesh says otherwise: pairs with a convex mesh that do not touch: {count['solid']}, that touch: {count['missed']}; "
+    print(f"trimesh says otherwise: pairs with a convex mesh that do not touch: {count['solid']}, that touch: "
+          f"{count['missed']}; "
           f"other pairs: {count['other']}; faces: {count['faces_theirs']}")
     print(f"scenes={scenes} differences={count['differences']}")
     return 1 if count["differences"] or not count["pairs"] else 0

@@ -4,9 +4,10 @@
 
 usage: over_dask.py [QUERIES] [--speed]      (default 200000; CCHIP_SEED repeats a run)
 
-Compares collide_many() over Dask with collide_many() here: hits, and every contact of a quarter of the queries, twice, while
-workers are killed; then clash_many.py with all pairs here. --speed only measures, with all contacts: one thread here, one worker and two in turns. The last line is
-`queries=N differing=N lost=N`. Exit code 1 if an answer differs or is missing, or no worker was killed."""
+Compares collide_many() over Dask with collide_many() here: hits, and every contact of a quarter of the queries, twice,
+while workers are killed; then clash_many.py with all pairs here. --speed only measures, with all contacts: one thread
+here, one worker and two in turns. The last line is `queries=N differing=N lost=N`. Exit code 1 if an answer differs or
+is missing, or no worker was killed."""
 import csv
 import importlib.util
 import os
@@ -30,7 +31,8 @@ EXAMPLES = pathlib.Path(__file__).parents[1] / "examples"
 
 
 def load_example():
-    """collide_dask.py, without its folder in sys.path: workers have the same path, and would find the file though nobody sent it."""
+    """collide_dask.py, without its folder in sys.path: workers have the same path, and would find the file though
+    nobody sent it."""
     spec = importlib.util.spec_from_file_location("collide_dask", EXAMPLES / "collide_dask.py")
     sys.modules[spec.name] = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(sys.modules[spec.name])
@@ -38,7 +40,8 @@ def load_example():
 
 
 def cluster(workers):
-    return LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address=None)
+    return LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, host="127.0.0.1",
+                        dashboard_address=None)
 
 
 def kill(client, running, count):
@@ -75,7 +78,8 @@ def clashes(client, random):
         mesh = trimesh.Trimesh(*torus(1, 0.3, 16, 6), process=False)
         for i, pose in enumerate(poses(random, 30, 3)):
             mesh.copy().apply_transform(pose).export(folder / f"part{i:02}.stl")
-        done = subprocess.run([sys.executable, EXAMPLES / "clash_many.py", folder, folder / "clashes.csv", client.scheduler.address],
+        done = subprocess.run([sys.executable, EXAMPLES / "clash_many.py", folder, folder / "clashes.csv",
+                               client.scheduler.address],
                               stdout=subprocess.PIPE, text=True)
         print(done.stdout, end="")
         with open(folder / "clashes.csv", newline="") as file:
@@ -112,8 +116,10 @@ def speed(mesh, where_a, where_b):
         collide_dask.collide_many(client2, mesh, None, mesh, where_b[:2000], chunk=1)
         tasks = 2000 / (time.perf_counter() - start)
     none, one, two = (statistics.median(times[workers][1:]) for workers in (0, 1, 2))  # the first builds the objects
-    print(f"queries={len(where_a)} us_per_query={none / len(where_a) * 1e6:.1f} one_thread={none:.2f}s one_worker={one:.2f}s two_workers={two:.2f}s "
-          f"one_worker/one_thread={one / none:.2f} one_worker/two_workers={one / two:.2f} tasks_per_s={tasks:.0f} load={os.getloadavg()[0]:.1f}")
+    print(f"queries={len(where_a)} us_per_query={none / len(where_a) * 1e6:.1f} one_thread={none:.2f}s "
+          f"one_worker={one:.2f}s two_workers={two:.2f}s "
+          f"one_worker/one_thread={one / none:.2f} one_worker/two_workers={one / two:.2f} tasks_per_s={tasks:.0f} "
+          f"load={os.getloadavg()[0]:.1f}")
 
 
 def memory():
@@ -124,7 +130,8 @@ def memory():
     vertices, faces = torus(1, 0.3, 1000, 500)
     before = resident()
     kept = collisionchip.Object(vertices, faces)
-    print(f"triangles={kept.face_count} arrays={(vertices.nbytes + faces.nbytes) / len(faces):.0f} object={(resident() - before) / len(faces):.0f} "
+    print(f"triangles={kept.face_count} arrays={(vertices.nbytes + faces.nbytes) / len(faces):.0f} "
+          f"object={(resident() - before) / len(faces):.0f} "
           "bytes per triangle")
 
 

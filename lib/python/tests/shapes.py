@@ -17,7 +17,8 @@ def cube(side=1.0):
 def joined(*meshes):
     """One mesh of several, whose surfaces are its shells; each is (vertices, faces)."""
     starts = np.cumsum([0] + [len(vertices) for vertices, _ in meshes])
-    return np.concatenate([vertices for vertices, _ in meshes]), np.concatenate([faces + start for (_, faces), start in zip(meshes, starts)])
+    return np.concatenate([vertices for vertices, _ in meshes]), np.concatenate(
+        [faces + start for (_, faces), start in zip(meshes, starts)])
 
 
 def torus(major=1.0, minor=0.3, around=24, across=12):

@@ -31,14 +31,16 @@ def cube():
 def test_single(cube, contacts, relation, device):
     opened = device and collisionchip.open_device(device)
     for x in (0.5, 1, 1 + 2**-52, 7):
-        result = collide(cube, None, cube, moved(x), contacts=contacts, relation=relation, device=opened, certificate=True)
+        result = collide(cube, None, cube, moved(x), contacts=contacts, relation=relation, device=opened,
+                         certificate=True)
         claim = result.certificate.check()
         assert bool(claim["contacts"]) == result.hit
         if relation:
             assert claim["relation"] == result.relation
         if contacts == "all":
             assert [c[:2] for c in claim["contacts"]] == result.contacts.tolist()
-        assert collide(cube, None, cube, moved(x), contacts=contacts, relation=relation, device=opened).certificate is None
+        assert collide(cube, None, cube, moved(x), contacts=contacts, relation=relation,
+                       device=opened).certificate is None
 
 
 def test_of_a_file_with_polygons(tmp_path):
@@ -97,13 +99,15 @@ def test_a_file_of_several(cube, tmp_path):
                                        + "".join("4 %d %d %d %d\n" % tuple(q) for q in QUADS))
     lines, poses = "", ""
     for x in (0.5, 7):
-        lines += "\n".join(collide(cube, None, cube, moved(x), contacts="all", certificate=True).certificate.lines) + "\n"
+        lines += "\n".join(collide(cube, None, cube, moved(x), contacts="all",
+                                   certificate=True).certificate.lines) + "\n"
         poses += " ".join(str(v) for pose in (np.eye(4), moved(x)) for v in pose[:3].ravel()) + "\n"
 
     def run(poses, lines):
         (tmp_path / "poses").write_text(poses)
         (tmp_path / "proofs").write_text(lines, newline="")
-        done = subprocess.run([sys.executable, check.__file__, *(tmp_path / name for name in ("cube.off", "cube.off", "poses", "proofs"))],
+        done = subprocess.run([sys.executable, check.__file__,
+                               *(tmp_path / name for name in ("cube.off", "cube.off", "poses", "proofs"))],
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60)
         return done.returncode, done.stdout
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""clash_many.py on boxes, whose relations are known. `scripts/run test-dask` runs it; skipped where distributed is not installed."""
+"""clash_many.py on boxes, whose relations are known. `scripts/run test-dask` runs it; skipped where distributed is not
+installed."""
 import csv
 import pathlib
 import re
@@ -16,13 +17,16 @@ EXAMPLE = pathlib.Path(__file__).parents[1] / "examples/clash_many.py"
 
 def write_box(path, least, greatest, faces=6):
     """A box of quads; of fewer than six faces it is open."""
-    corners = [[(greatest if bit else least)[axis] for axis, bit in enumerate((i >> 2 & 1, i >> 1 & 1, i & 1))] for i in range(8)]
+    corners = [[(greatest if bit else least)[axis] for axis, bit in enumerate((i >> 2 & 1, i >> 1 & 1, i & 1))]
+               for i in range(8)]
     quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)][:faces]
-    path.write_text("".join("v %r %r %r\n" % tuple(c) for c in corners) + "".join("f %d %d %d %d\n" % tuple(1 + v for v in q) for q in quads))
+    path.write_text("".join("v %r %r %r\n" % tuple(c) for c in corners)
+                    + "".join("f %d %d %d %d\n" % tuple(1 + v for v in q) for q in quads))
 
 
 def run(*arguments):
-    return subprocess.run([sys.executable, EXAMPLE, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=120)
+    return subprocess.run([sys.executable, EXAMPLE, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          text=True, timeout=120)
 
 
 def test_what_pairs_are(tmp_path):
@@ -42,7 +46,8 @@ def test_what_pairs_are(tmp_path):
     assert done.returncode == 1, done.stderr
     assert "open.obj: not closed" in done.stderr and "on_open.obj: not closed" not in done.stderr
     with open(tmp_path / "clashes.csv", newline="") as file:
-        found = {(line["a"][:-4], line["b"][:-4]): (line["relation"], line["solids"], line["distance"]) for line in csv.DictReader(file)}
+        found = {(line["a"][:-4], line["b"][:-4]): (line["relation"], line["solids"], line["distance"])
+                 for line in csv.DictReader(file)}
     assert found.pop(("base", "copy"))[1] == "equal"
     assert found == {
         ("base", "inside"): ("apart", "b_in_a", ""),
@@ -54,7 +59,8 @@ def test_what_pairs_are(tmp_path):
         ("shifted2", "shifted3"): ("touching", "touching", "0.0"),
     }
     text = page.read_text()
-    for words in ("duplicate", "b inside a", "0.25 apart", "surfaces touch, not both closed: no solids", ">overlap<", ">touch<"):
+    for words in ("duplicate", "b inside a", "0.25 apart", "surfaces touch, not both closed: no solids",
+                  ">overlap<", ">touch<"):
         assert words in text, words
     links = re.findall(r'href="(.*?)"', text)
     assert len(links) == 4 and all("three" in (tmp_path / link).read_text().lower() for link in links)
@@ -79,7 +85,8 @@ def test_shells_that_overlap(tmp_path):
     (folder / "a.obj").write_text(box + "".join(line + "\n" for line in box.splitlines() if line.startswith("f")))
     page = tmp_path / "clashes.html"
     done = run(folder, tmp_path / "clashes.csv", "--report", page)
-    assert done.returncode == 3 and "a.obj: faces 0 and 6 cross or lie on each other" in done.stderr and "b.obj: faces" not in done.stderr
+    assert (done.returncode == 3 and "a.obj: faces 0 and 6 cross or lie on each other" in done.stderr
+            and "b.obj: faces" not in done.stderr)
     assert "<li>a.obj: faces 0 and 6<" in page.read_text()
     done = run(folder, tmp_path / "clashes.csv", "--inside", "nonzero")
     assert done.returncode == 1 and "faces 0" not in done.stderr

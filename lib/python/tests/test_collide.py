@@ -198,7 +198,8 @@ def test_poses_of_three_rows():
 
 
 def test_words_that_are_refused():
-    for arguments in ({"contacts": "some"}, {"least": "near"}, {"contacts": "all", "max_contacts": 0}, {"max_contacts": 0}):
+    for arguments in ({"contacts": "some"}, {"least": "near"}, {"contacts": "all", "max_contacts": 0},
+                      {"max_contacts": 0}):
         with pytest.raises(ValueError):
             collide(CUBE, None, CUBE, None, **arguments)
     with pytest.raises(ValueError, match="cpu"):
@@ -268,7 +269,8 @@ def test_batches_of_other_sizes():
     assert collide_many(CUBE, None, CUBE, np.zeros((0, 4, 4))).shape == (0,)
     assert collide_many(CUBE, None, CUBE, None).tolist() == [True]
     batch = poses(np.random.default_rng(SEED), 10, 1)
-    assert (collide_many(CUBE, batch, TORUS, None) == collide_many(CUBE, batch, TORUS, np.stack([np.eye(4)] * 10))).all()
+    assert (collide_many(CUBE, batch, TORUS, None) == collide_many(CUBE, batch, TORUS,
+                                                                   np.stack([np.eye(4)] * 10))).all()
     with pytest.raises(ValueError, match="poses_a are 10, poses_b 9"):
         collide_many(CUBE, batch, CUBE, batch[1:])
     batch[7, 3, 3] = 2
@@ -330,7 +332,8 @@ def test_an_object_with_other_vertices():
     grown = made.moved(2 * vertices)
     assert made.vertex_count == grown.vertex_count
     batch = poses(np.random.default_rng(SEED), 50, 2)
-    assert (collide_many(grown, None, CUBE, batch) == collide_many(Object(2 * vertices, faces), None, CUBE, batch)).all()
+    assert (collide_many(grown, None, CUBE, batch) == collide_many(Object(2 * vertices, faces), None, CUBE,
+                                                                   batch)).all()
     with pytest.raises(ValueError, match="vertices, the object has"):
         made.moved(vertices[1:])
     with pytest.raises(ValueError, match=r"give \(n, 3\)"):
@@ -467,7 +470,8 @@ print(len(os.listdir("/proc/self/task")) - before - 8 < (os.cpu_count() or 1), w
 ready.wait()
 for thread in threads: thread.join()
 """.format(path=sys.path)
-    assert subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout == "True []\n"
+    assert subprocess.run([sys.executable, "-c", program], capture_output=True, text=True,
+                          check=True).stdout == "True []\n"
 
 
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="switches the mode of x86")
@@ -543,7 +547,8 @@ def test_intersections_curves_and_normals():
         assert points.dtype == np.float64 and (points >= 0).all() and (points <= 0.5).all()
     (points, closed), = result.curves()
     assert closed
-    assert {(0.5, 0, 0), (0.5, 0.5, 0), (0, 0.5, 0), (0, 0.5, 0.5), (0, 0, 0.5), (0.5, 0, 0.5)} <= set(map(tuple, points))
+    assert {(0.5, 0, 0), (0.5, 0.5, 0), (0, 0.5, 0), (0, 0.5, 0.5), (0, 0, 0.5),
+            (0.5, 0, 0.5)} <= set(map(tuple, points))
     normals = result.normals()
     assert normals.shape == (len(result.contacts), 2, 3)
     assert (np.abs(normals).sum(axis=2) == 1).all()
@@ -558,7 +563,8 @@ def test_intersections_curves_and_normals():
 def test_solids():
     box = Object(*cube())
     small = np.diag([0.5, 0.5, 0.5, 1])
-    for pose, relation in ((shift(2), "disjoint"), (shift(1), "touching"), (shift(0.5), "overlapping"), (None, "equal"), (small, "b_in_a")):
+    for pose, relation in ((shift(2), "disjoint"), (shift(1), "touching"), (shift(0.5), "overlapping"), (None, "equal"),
+                           (small, "b_in_a")):
         assert collisionchip.solids(box, None, box, pose) == relation
     assert collisionchip.solids(box, small, box, None) == "a_in_b"
     corners, faces = cube()
@@ -582,7 +588,8 @@ def test_shells_that_overlap():
     a, b = two.shell_overlap
     assert a < 12 <= b and type(a) is int
     assert twice.shell_overlap is not None
-    assert Object(*joined(bar(), bar(2))).shell_overlap is None and Object(*joined(bar(), bar(1.25))).shell_overlap is None
+    assert Object(*joined(bar(), bar(2))).shell_overlap is None and Object(
+        *joined(bar(), bar(1.25))).shell_overlap is None
     assert Object(*cube()).shell_overlap is None and Object(*cube()).twisted_edge is None
     corners, faces = cube()
     twisted = Object(corners, np.concatenate([faces[:1, ::-1], faces[1:]]))
@@ -613,13 +620,16 @@ def test_solids_of_shells_that_overlap_warn():
         collisionchip.solids(two, None, small, None, inside="even")
     corners, faces = cube()
     with pytest.raises(ValueError, match="B"):
-        collisionchip.solids(small, None, Object(corners, np.concatenate([faces[:1, ::-1], faces[1:]])), None, inside="nonzero")
+        collisionchip.solids(small, None, Object(corners, np.concatenate([faces[:1, ::-1], faces[1:]])), None,
+                             inside="nonzero")
 
 
 def test_along():
     box = Object(*cube())
-    for pose, direction, factor in ((shift(0.5), (1, 0, 0), 0.5), (shift(0.5), [-1, 0, 0], 1.5), (None, np.array([0, 0, 2]), 0.5),
-                                    (shift(1), (1, 0, 0), 0), (shift(1), (0, 1, 0), 1), (shift(0.75, 0.5), (1, 1, 0), 0.25)):
+    for pose, direction, factor in ((shift(0.5), (1, 0, 0), 0.5), (shift(0.5), [-1, 0, 0], 1.5),
+                                    (None, np.array([0, 0, 2]), 0.5),
+                                    (shift(1), (1, 0, 0), 0), (shift(1), (0, 1, 0), 1),
+                                    (shift(0.75, 0.5), (1, 1, 0), 0.25)):
         clear = collisionchip.clear_along(box, None, box, pose, direction)
         assert (clear.touches, clear.factor, clear.lower, clear.upper) == (True, factor, factor, factor)
         assert clear.faces.shape == (2,) and clear.faces.dtype == np.uint32

@@ -14,16 +14,19 @@ EXAMPLES = ROOT / "lib/python/examples"
 
 
 def run(*command):
-    done = subprocess.run([sys.executable, *command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60)
+    done = subprocess.run([sys.executable, *command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          text=True, timeout=60)
     return done.returncode, done.stdout
 
 
 def write_box(path, least, greatest=None, faces=6):
     """A box, of fewer than six faces open; by default with sides of 1."""
     greatest = greatest or [x + 1 for x in least]
-    corners = [(x, y, z) for x in (least[0], greatest[0]) for y in (least[1], greatest[1]) for z in (least[2], greatest[2])]
+    corners = [(x, y, z) for x in (least[0], greatest[0]) for y in (least[1], greatest[1])
+               for z in (least[2], greatest[2])]
     quads = [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4)][:faces]
-    path.write_text("".join(f"v {a} {b} {c}\n" for a, b, c in corners) + "".join("f %d %d %d %d\n" % quad for quad in quads))
+    path.write_text("".join(f"v {a} {b} {c}\n" for a, b, c in corners)
+                    + "".join("f %d %d %d %d\n" % quad for quad in quads))
 
 
 def check(folder, *options):
@@ -74,7 +77,8 @@ def test_clash_check_says_what_it_cannot_judge(tmp_path):
 def test_clash_check_of_shells_that_overlap(tmp_path):
     write_box(tmp_path / "a.obj", (0, 0, 0), (4, 4, 4))
     write_box(tmp_path / "more.obj", (2, 1, 1), (6, 5, 5))
-    more = re.sub(r"(?<= )\d+(?= |$)", lambda number: str(int(number[0]) + 8), "".join((tmp_path / "more.obj").read_text().partition("f ")[1:]), flags=re.M)
+    more = re.sub(r"(?<= )\d+(?= |$)", lambda number: str(int(number[0]) + 8),
+                  "".join((tmp_path / "more.obj").read_text().partition("f ")[1:]), flags=re.M)
     vertices = (tmp_path / "more.obj").read_text().partition("f ")[0]
     (tmp_path / "more.obj").unlink()
     (tmp_path / "a.obj").write_text((tmp_path / "a.obj").read_text() + vertices + more)
@@ -84,9 +88,11 @@ def test_clash_check_of_shells_that_overlap(tmp_path):
     assert "a.obj cross or lie on each other; try --inside nonzero\n" in text and "Warning" not in text
     assert check(tmp_path, "--inside", "nonzero") == (1, "a.obj b.obj b_in_a\nparts=2 clashes=1\n")
     lines = (tmp_path / "b.obj").read_text().splitlines()
-    (tmp_path / "b.obj").write_text("\n".join(lines[:-1] + ["f " + " ".join(lines[-1].split()[:0:-1])]) + "\n")  # one face the other way round
+    # one face the other way round
+    (tmp_path / "b.obj").write_text("\n".join(lines[:-1] + ["f " + " ".join(lines[-1].split()[:0:-1])]) + "\n")
     code, text = check(tmp_path, "--inside", "nonzero")
-    assert code == 3 and "a.obj b.obj cannot be judged: faces of " in text and "b.obj are not all" in text and "clashes=0" in text
+    assert (code == 3 and "a.obj b.obj cannot be judged: faces of " in text and "b.obj are not all" in text
+            and "clashes=0" in text)
 
 
 def test_clash_check_command_line(tmp_path):

@@ -180,7 +180,8 @@ def test_least_distances_against_all_pairs():
         del placed[0]["0.03"]
         managers[0].set_pair_ignored("0.00", "0.01")
         names = sorted(placed[0])
-        inside = {(a, b): distance(*placed[0][a], *placed[0][b]).upper for i, a in enumerate(names) for b in names[i + 1:] if (a, b) != ("0.00", "0.01")}
+        inside = {(a, b): distance(*placed[0][a], *placed[0][b]).upper for i, a in enumerate(names)
+                  for b in names[i + 1:] if (a, b) != ("0.00", "0.01")}
         found, pair, data = managers[0].min_distance_internal(return_names=True, return_data=True)
         assert found == min(inside.values()) == inside[pair] and data.names == set(pair)
         for name in names:

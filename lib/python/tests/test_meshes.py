@@ -143,7 +143,8 @@ def test_ids_are_no_meshes():
 def test_packages_themselves():
     trimesh = pytest.importorskip("trimesh")
     assert Object(trimesh.creation.box()).face_count == 12
-    for mesh, remedy in ((trimesh.Scene(trimesh.creation.box()), r"scene.to_mesh\(\)"), (trimesh.PointCloud(VERTICES), "no faces"),
+    for mesh, remedy in ((trimesh.Scene(trimesh.creation.box()), r"scene.to_mesh\(\)"),
+                         (trimesh.PointCloud(VERTICES), "no faces"),
                          (trimesh.load_path(VERTICES[:3]), "no faces")):
         with pytest.raises(TypeError, match=remedy):
             collide(mesh, None, CUBE, None)
@@ -155,7 +156,8 @@ def test_pyvista_itself():
     for mesh in (pyvista.Sphere(), pyvista.Cube(), pyvista.Cube().triangulate(), pyvista.Cube() + pyvista.Sphere()):
         assert collide(mesh, None, CUBE, None) or mesh.n_cells == 0
         assert Object(mesh).face_count == mesh.n_cells
-    for mesh, remedy in ((pyvista.ImageData(dimensions=(3, 3, 3)), "extract_surface"), (pyvista.MultiBlock([pyvista.Cube()]), "give"),
+    for mesh, remedy in ((pyvista.ImageData(dimensions=(3, 3, 3)), "extract_surface"),
+                         (pyvista.MultiBlock([pyvista.Cube()]), "give"),
                          (pyvista.Sphere().cast_to_unstructured_grid(), "extract_surface")):
         with pytest.raises(TypeError, match=remedy):
             CollisionManager().add_object("x", mesh)

@@ -24,7 +24,8 @@ def test_a_sphere_that_touches_meets():
     assert met(PointCloud(points), None) == [[1, 3]]
     assert met(PointCloud(points, 0.25), None) == [[0, 1], [1, 3]]
     assert met(PointCloud(points, math.nextafter(0.25, 0)), None) == [[1, 3]]
-    assert met(PointCloud(points, 0.5), None) == [[0, 1], *([1, face] for face in (0, 1, 3, 4, 5)), *([2, face] for face in range(6))]
+    assert met(PointCloud(points, 0.5), None) == [[0, 1], *([1, face] for face in (0, 1, 3, 4, 5)),
+                                                  *([2, face] for face in range(6))]
 
 
 def test_a_radius_for_each_point():
@@ -109,11 +110,13 @@ def test_files(tmp_path):
     packed.write_bytes(gzip.compress(xyz.read_bytes()))
     assert load_points(str(packed)).tolist() == points
     ply = tmp_path / "scan.ply"
-    ply.write_bytes(b"ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty double x\nproperty double y\nproperty double z\nend_header\n"
+    ply.write_bytes(b"ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty double x\nproperty double y\n"
+                    b"property double z\nend_header\n"
                     + struct.pack("<6d", *points[0], *points[1]))
     assert load_points(bytes(ply)).tolist() == points
     pcd = tmp_path / "scan.pcd"
-    pcd.write_text("VERSION .7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA ascii\n"
+    pcd.write_text("VERSION .7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 "
+                   "1 0 0 0\nPOINTS 2\nDATA ascii\n"
                    "0.75 0 0\n0 0.1 -2e-9\n")
     found = load_points(pcd)
     assert found.tolist() == points and found.dtype == np.float64
@@ -128,7 +131,8 @@ def test_files(tmp_path):
 
 
 def test_against_distances_in_numpy():
-    """Points on a grid of 1/8 around the cube from -1/2 to 1/2: the distance from its surface is a matter of squares, which are exact."""
+    """Points on a grid of 1/8 around the cube from -1/2 to 1/2: the distance from its surface is a matter of squares,
+    which are exact."""
     side = np.arange(-8, 9) / 8
     points = np.array([(x, y, z) for x in side for y in side for z in side])
     outside = np.maximum(np.abs(points) - 0.5, 0)
@@ -145,7 +149,9 @@ def test_numbers_of_points_are_those_of_the_file(tmp_path):
     rows = [(0.5, 0, 0), (np.nan, 0, 0), (9, 9, 9), (0, np.inf, 0), (0, 0.5, 0), (np.nan,) * 3, (-0.5, 0, 0)]
     path.write_text("".join(" ".join(map(repr, map(float, row))) + "\n" for row in rows))
     points, numbers = load_points(path, numbers=True)
-    assert numbers.dtype == np.uint32 and numbers.tolist() == [0, 2, 4, 6] and points.tolist() == [list(rows[i]) for i in numbers]
+    assert numbers.dtype == np.uint32 and numbers.tolist() == [0, 2, 4,
+                                                               6] and points.tolist() == [list(rows[i])
+                                                                                          for i in numbers]
     assert load_points(path).tolist() == points.tolist()
     for cloud in (PointCloud.load(path), PointCloud(points, 0, numbers), PointCloud(points, [0] * 4, numbers.tolist())):
         assert len(cloud) == 4
@@ -165,7 +171,8 @@ def test_numbers_of_points_are_those_of_the_file(tmp_path):
 def test_first_met_takes_any_iterable():
     cloud = PointCloud([(0.5, 0, 0)])
     pairs = [(CUBE, shift(5)), (CUBE, None)]
-    for objects in (pairs, tuple(pairs), iter(pairs), (pair for pair in pairs), dict(enumerate(pairs)).values(), [list(pair) for pair in pairs]):
+    for objects in (pairs, tuple(pairs), iter(pairs), (pair for pair in pairs), dict(enumerate(pairs)).values(),
+                    [list(pair) for pair in pairs]):
         assert first_met(cloud, None, objects) == 1
     for wrong in (None, 3, CUBE):
         with pytest.raises(TypeError, match="objects cannot be iterated over"):

@@ -28,9 +28,11 @@ def turns(x, y, z):
 def test_quarter_turns_are_exact():
     for degrees in QUARTERS:
         expected = turns(*degrees)
-        for pose in (make_pose((1, 2, 3), degrees), make_pose((1, 2, 3), rpy=np.radians(degrees)), make_pose((1, 2, 3), rpy=[d / 90 * math.pi / 2 for d in degrees]),
+        for pose in (make_pose((1, 2, 3), degrees), make_pose((1, 2, 3), rpy=np.radians(degrees)),
+                     make_pose((1, 2, 3), rpy=[d / 90 * math.pi / 2 for d in degrees]),
                      make_pose((1, 2, 3), rotation=make_pose(degrees=degrees)[:3, :3] + 1e-16)):
-            assert pose[:3, :3].tolist() == expected.tolist() and pose[:3, 3].tolist() == [1, 2, 3] and pose[3].tolist() == [0, 0, 0, 1]
+            assert pose[:3, :3].tolist() == expected.tolist() and pose[:3, 3].tolist() == [1, 2, 3] and pose[
+                3].tolist() == [0, 0, 0, 1]
 
 
 def test_quaternions():
@@ -42,7 +44,8 @@ def test_quaternions():
             assert pose.tolist() == make_pose(degrees=(0, 0, 90 if w > 0 else -90)).tolist()
             assert make_pose(wxyz=(w, 0, 0, z)).tolist() == pose.tolist()
     assert make_pose(wxyz=(5, 5, 5, 5))[:3, :3].tolist() == [[0, 0, 1], [1, 0, 0], [0, 1, 0]]
-    assert make_pose(wxyz=(1e-200, 0, 0, 1e-200)).tolist() == make_pose(wxyz=(1e200, 0, 0, 1e200)).tolist() == make_pose(degrees=(0, 0, 90)).tolist()
+    assert make_pose(wxyz=(1e-200, 0, 0, 1e-200)).tolist() == make_pose(
+        wxyz=(1e200, 0, 0, 1e200)).tolist() == make_pose(degrees=(0, 0, 90)).tolist()
     random = np.random.default_rng(SEED)
     for q in random.normal(size=(100, 4)):
         r = make_pose(wxyz=q)[:3, :3]
@@ -59,7 +62,8 @@ def test_scipy():
     for degrees in QUARTERS:
         rotation = Rotation.from_euler("xyz", degrees, degrees=True)
         expected = turns(*degrees).tolist()
-        for pose in (make_pose(rotation=rotation), make_pose(xyzw=rotation.as_quat()), make_pose(rotation=rotation.as_matrix())):
+        for pose in (make_pose(rotation=rotation), make_pose(xyzw=rotation.as_quat()),
+                     make_pose(rotation=rotation.as_matrix())):
             assert pose[:3, :3].tolist() == expected
     for angles in np.random.default_rng(SEED).uniform(-180, 180, size=(100, 3)):
         rotation = Rotation.from_euler("xyz", angles, degrees=True)
@@ -81,8 +85,10 @@ def test_small_angles_are_kept():
 
 
 def test_errors():
-    for arguments in ({"degrees": (0, 0)}, {"rpy": 3}, {"xyzw": (0, 0, 0, 0)}, {"wxyz": (1, 0, 0)}, {"xyzw": (0, 0, 0, np.nan)},
-                      {"rotation": np.eye(4)}, {"translation": (1, 2)}, {"translation": (1, 2, np.inf)}, {"rotation": np.full((3, 3), np.nan)}):
+    for arguments in ({"degrees": (0, 0)}, {"rpy": 3}, {"xyzw": (0, 0, 0, 0)}, {"wxyz": (1, 0, 0)},
+                      {"xyzw": (0, 0, 0, np.nan)},
+                      {"rotation": np.eye(4)}, {"translation": (1, 2)}, {"translation": (1, 2, np.inf)},
+                      {"rotation": np.full((3, 3), np.nan)}):
         with pytest.raises(ValueError, match=f"{next(iter(arguments))} .*(give|; )"):
             make_pose(**arguments)
     with pytest.raises(TypeError, match="degrees and wxyz"):

@@ -144,14 +144,16 @@ def test_a_filter_that_refers_to_its_scene_is_collected():
 
 def test_solids():
     scene = Scene()
-    big, inside, flush, across, copy = (scene.add(Object(*cube(side)), shift(x)) for side, x in ((4, 0), (1, 0), (1, 1.5), (1, 2), (4, 0)))
+    big, inside, flush, across, copy = (scene.add(Object(*cube(side)), shift(x))
+                                        for side, x in ((4, 0), (1, 0), (1, 1.5), (1, 2), (4, 0)))
     found = dict(((a, b), word) for a, b, word in scene.solids())
     assert found[big, inside] == "b_in_a" and found[big, flush] == "b_in_a" and found[big, across] == "overlapping"
     assert found[big, copy] == "equal" and found[inside, copy] == "a_in_b" and (inside, across) not in found
     scene.set_ignored(big, copy)
     scene.set_filter(lambda a, b: across not in (a, b))
     assert {(a, b) for a, b, _ in scene.solids(device=open_device("cpu", threads=1))} == {
-        (big, inside), (big, flush), (inside, copy), (flush, copy)} | ({(inside, flush)} if (inside, flush) in found else set())
+        (big, inside), (big, flush), (inside, copy),
+        (flush, copy)} | ({(inside, flush)} if (inside, flush) in found else set())
     scene.add(Object([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]))
     with pytest.raises(ValueError, match="closed|open"):
         scene.solids()
@@ -161,7 +163,8 @@ def test_solids_of_shells_that_overlap():
     corners, faces = cube()
     two = Object(*joined((corners, faces), (corners + (0.5, 0.125, 0.0625), faces)))
     scene = Scene()
-    part, one, other = scene.add(two), scene.add(Object(*cube(0.25)), shift(0.25)), scene.add(Object(*cube(0.25)), shift(-0.25))
+    part, one, other = scene.add(two), scene.add(Object(*cube(0.25)),
+                                                 shift(0.25)), scene.add(Object(*cube(0.25)), shift(-0.25))
     with pytest.warns(UserWarning) as said:
         assert scene.solids() == [(part, other, "b_in_a")]
     assert len(said) == 1 and f"of object {part} cross" in str(said[0].message)  # not once for each pair

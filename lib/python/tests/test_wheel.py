@@ -12,7 +12,8 @@ from packaging.utils import parse_wheel_filename
 ROOT = pathlib.Path(__file__).parents[3]
 
 # PEP 513, without the libraries of X11 and Glib; zlib is on the lists of all manylinux tags since.
-EVERYWHERE = {"libgcc_s.so.1", "libstdc++.so.6", "libm.so.6", "libdl.so.2", "librt.so.1", "libc.so.6", "libpthread.so.0",
+EVERYWHERE = {"libgcc_s.so.1", "libstdc++.so.6", "libm.so.6", "libdl.so.2", "librt.so.1", "libc.so.6",
+              "libpthread.so.0",
               "ld-linux-x86-64.so.2", "ld-linux-aarch64.so.1", "libz.so.1"}
 
 # A sentence of each licence that the texts must hold.
@@ -74,8 +75,10 @@ def test_libraries_come_along(wheel):
 
 def test_licences(wheel):
     with zipfile.ZipFile(wheel) as archive:
-        texts = {pathlib.PurePath(name).name: archive.read(name).decode() for name in archive.namelist() if ".dist-info/licenses/" in name}
-        metadata = next(archive.read(name).decode() for name in archive.namelist() if name.endswith(".dist-info/METADATA"))
+        texts = {pathlib.PurePath(name).name: archive.read(name).decode()
+                 for name in archive.namelist() if ".dist-info/licenses/" in name}
+        metadata = next(archive.read(name).decode()
+                        for name in archive.namelist() if name.endswith(".dist-info/METADATA"))
     for name, sentence in LICENCES.items():
         assert sentence in texts[name], name
         assert re.search(rf"^License-File: .*{re.escape(name)}$", metadata, re.M), name

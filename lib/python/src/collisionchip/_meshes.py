@@ -9,7 +9,8 @@ import numpy as np
 
 
 def _kind(mesh: Any) -> str:
-    return f"{type(mesh).__module__.partition('.')[0]}.{type(mesh).__qualname__}" if type(mesh).__module__ != "builtins" else type(mesh).__qualname__
+    return f"{type(mesh).__module__.partition('.')[0]}.{type(mesh).__qualname__}" if type(
+        mesh).__module__ != "builtins" else type(mesh).__qualname__
 
 
 def _has(mesh: Any, *names: str) -> bool:
@@ -17,7 +18,8 @@ def _has(mesh: Any, *names: str) -> bool:
 
 
 def _unpadded(padded: Any, name: str) -> Any:
-    """Faces of VTK, [count, vertex, ..., count, ...]: triangles and quads, a triangle among quads with its last vertex twice."""
+    """Faces of VTK, [count, vertex, ..., count, ...]: triangles and quads, a triangle among quads with its last vertex
+    twice."""
     padded = np.asarray(padded)
     rows = []
     at = 0
@@ -46,11 +48,13 @@ def _of_pyvista(mesh: Any, name: str) -> tuple[Any, Any]:
 def arrays_of(mesh: Any, name: str) -> tuple[Any, Any]:
     """Vertices and faces of a mesh of trimesh, PyVista or Open3D, or of anything with `vertices` and `faces`.
 
-    Raises TypeError: it is no mesh; ValueError: it is one whose faces cannot be used. The message is a line with the remedy."""
+    Raises TypeError: it is no mesh; ValueError: it is one whose faces cannot be used. The message is a line with the
+    remedy."""
     if isinstance(mesh, (str, bytes, os.PathLike)):
         raise TypeError(f"{name} is a path or a text; give Object.load({os.fspath(mesh)!r})")
     if _has(mesh, "graph", "geometry"):
-        raise TypeError(f"{name} is a {_kind(mesh)} of several meshes; give scene.to_mesh(), all of them in their places as one, "
+        raise TypeError(f"{name} is a {_kind(mesh)} of several meshes; give scene.to_mesh(), all of them in their "
+                        "places as one, "
                         "or use scene_to_collision(scene)")
     if _has(mesh, "vertices", "faces"):
         return np.asarray(mesh.vertices), np.asarray(mesh.faces)
@@ -64,7 +68,8 @@ def arrays_of(mesh: Any, name: str) -> tuple[Any, Any]:
     if _has(mesh, "points", "faces"):
         return _of_pyvista(mesh, name)
     if hasattr(mesh, "extract_surface"):  # PyVista's grids
-        raise TypeError(f"{name} is a {_kind(mesh)}, which has no faces of its own; give mesh.extract_surface().triangulate()")
+        raise TypeError(f"{name} is a {_kind(mesh)}, which has no faces of its own; give "
+                        "mesh.extract_surface().triangulate()")
     if _has(mesh, "points", "get_cells_type"):  # meshio
         raise TypeError(f"{name} is a {_kind(mesh)}; give Object(mesh.points, mesh.get_cells_type('triangle'))")
     if isinstance(mesh, (tuple, list)) and len(mesh) == 2:
@@ -73,7 +78,9 @@ def arrays_of(mesh: Any, name: str) -> tuple[Any, Any]:
         raise TypeError(f"{name} is a {_kind(mesh)} of several meshes; give each of them by itself")
     if _kind(mesh).endswith("PointCloud") or (_has(mesh, "points") and not _has(mesh, "faces")) or \
             (_has(mesh, "vertices") and not _has(mesh, "entities")):
-        raise TypeError(f"{name} is a {_kind(mesh)}, which has points but no faces; give a mesh, or collide() a PointCloud of its points, first")
+        raise TypeError(f"{name} is a {_kind(mesh)}, which has points but no faces; give a mesh, or collide() a "
+                        "PointCloud of its points, first")
     if _has(mesh, "vertices", "entities"):  # Path of trimesh
         raise TypeError(f"{name} is a {_kind(mesh)} of lines, which have no faces; give a mesh")
-    raise TypeError(f"{name} is a {_kind(mesh)}; give an Object: Object(vertices, faces), Object.load(path), or a mesh of trimesh, PyVista or Open3D")
+    raise TypeError(f"{name} is a {_kind(mesh)}; give an Object: Object(vertices, faces), Object.load(path), or a mesh "
+                    "of trimesh, PyVista or Open3D")

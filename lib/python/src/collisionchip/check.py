@@ -4,9 +4,10 @@
 
     python check.py A B POSES CERTIFICATE
 
-A, B: OFF or OBJ files of triangles and quads. POSES: for each certificate of the file 24 numbers, the matrix [R | t] of A
-row by row, then that of B.
-Exit code 0: accepted, and the claim is printed; 1: refused, with the first cell that fails; 2: a file cannot be read."""
+A, B: OFF or OBJ files of triangles and quads. POSES: for each certificate of the file 24 numbers, the matrix [R | t] of
+A row by row, then that of B.
+Exit code 0: accepted, and the claim is printed; 1: refused, with the first cell that fails; 2: a file cannot be
+read."""
 import json
 import math
 import re
@@ -98,7 +99,8 @@ def expanded(order):
     require(isinstance(order, list), "not a list")
     result = []
     for first, last in (x if isinstance(x, list) else (x, x) for x in order):
-        require(type(first) is type(last) is int and first <= last and last - first + len(result) < 2**24, "not an order of faces")
+        require(type(first) is type(last) is int and first <= last and last - first + len(result) < 2**24,
+                "not an order of faces")
         result += range(first, last + 1)
     return result
 
@@ -120,7 +122,8 @@ def check_point(cell, corners):
     if kind == "touch":
         require(overlap(cell["direction"], corners) <= 0, "A is not below B")
     if kind == "cross":
-        edges = {s + str(k): [p - q for p, q in zip(f[k], f[0])] for s, f in zip("ab", corners) for k in range(1, len(f))}
+        edges = {s + str(k): [p - q for p, q in zip(f[k], f[0])] for s, f in zip("ab", corners)
+                 for k in range(1, len(f))}
         require(isinstance(cell["span"], list), "a span is three edges")
         x, y, z = (edges[name] for name in cell["span"])
         normal = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]]
@@ -150,11 +153,13 @@ def check(meshes, poses, lines):
         c, cells = parse(lines[0]), lines[1:]
         version, claimed = c["collisionchip_certificate"], c["contacts"]
         require(type(version) is int and version == 1, "no certificate of version 1")
-        require(isinstance(claimed, list) and all(type(f) is int for x in claimed for f in x[:2]), "no list of contacts")
+        require(isinstance(claimed, list) and all(type(f) is int for x in claimed for f in x[:2]),
+                "no list of contacts")
         require(type(c["all"]) is bool and c["least"] in ("touching", "crossing"), "an unknown claim")
         hashes = [hash_mesh(*m) for m in meshes] + [hash_words(struct.pack("<24d", *(x + 0.0 for x in poses)))]
         require([c["mesh_a"], c["mesh_b"], c["poses"]] == hashes, "the certificate is of other meshes or poses")
-        points, found, orders = [placed(m[0], p) for m, p in zip(meshes, (poses[:12], poses[12:]))], {}, (expanded(c["order_a"]), expanded(c["order_b"]))
+        points, found, orders = [placed(m[0], p) for m, p in zip(meshes, (poses[:12], poses[12:]))], {}, (
+            expanded(c["order_a"]), expanded(c["order_b"]))
         once = [sorted(o) == [*range(c["all"] * len(m[1]))] for o, m in zip(orders, meshes)]
         require(all(once), "an order does not hold each face once")
         require(all(orders) if c["all"] else len(cells) == 1, "no faces, or other than one cell for one contact")
@@ -175,8 +180,10 @@ def check(meshes, poses, lines):
             else:
                 require(kind in ("meet", "touch", "cross"), "unknown kind of cell")
                 require(len(cell["faces"]) == 2, "a point needs two faces")
-                require(all(type(f) is int and 0 <= f < len(m[1]) for f, m in zip(cell["faces"], meshes)), "no such face")
-                require(not c["all"] or all([f] == o[slice(*x)] for f, o, x in zip(cell["faces"], orders, sets)), "other faces")
+                require(all(type(f) is int and 0 <= f < len(m[1]) for f, m in zip(cell["faces"], meshes)),
+                        "no such face")
+                require(not c["all"] or all([f] == o[slice(*x)] for f, o, x in zip(cell["faces"], orders, sets)),
+                        "other faces")
                 check_point(cell, [corners(s, cell["faces"][s]) for s in (0, 1)])
                 found.setdefault(tuple(m[2][f] for f, m in zip(cell["faces"], meshes)), set()).add(kind)
         number = "claim"
@@ -191,7 +198,8 @@ def read_mesh(text):
     lines = [words for words in (line.split("#")[0].split() for line in text.splitlines()) if words]
     if lines[0] == ["OFF"]:
         n, m = int(lines[1][0]), int(lines[1][1])
-        vertices, faces = lines[2:2 + n], [[int(x) for x in line[1:1 + int(line[0])]] for line in lines[2 + n:2 + n + m]]
+        vertices, faces = lines[2:2 + n], [[int(x) for x in line[1:1 + int(line[0])]]
+                                           for line in lines[2 + n:2 + n + m]]
     else:
         vertices = [line[1:] for line in lines if line[0] == "v"]
         faces = [[int(x.split("/")[0]) - 1 for x in line[1:]] for line in lines if line[0] == "f"]
@@ -203,8 +211,10 @@ def read_mesh(text):
 def main(arguments):
     try:
         require(len(arguments) == 4, "usage:" + __doc__)
-        texts = [open(path, encoding="utf-8", newline="\n" if n == 3 else None).read() for n, path in enumerate(arguments)]
-        meshes, poses, certificates = [read_mesh(text) for text in texts[:2]], [float(x) for x in texts[2].split()], split(texts[3])
+        texts = [open(path, encoding="utf-8", newline="\n" if n == 3 else None).read()
+                 for n, path in enumerate(arguments)]
+        meshes, poses, certificates = [read_mesh(text)
+                                       for text in texts[:2]], [float(x) for x in texts[2].split()], split(texts[3])
         if not certificates or len(poses) != 24 * len(certificates):
             raise ValueError(f"{len(poses)} numbers in POSES, but {len(certificates)} certificates; give 24 for each")
         claims = [check(meshes, poses[24 * n:24 * n + 24], lines) for n, lines in enumerate(certificates)]
@@ -213,7 +223,8 @@ def main(arguments):
     except (OSError, ValueError, IndexError) as error:
         sys.exit(print(f"check.py: {error}", file=sys.stderr) or 2)
     for c in claims:
-        print("accepted:", f"{len(c['contacts'])} contacts" if c["all"] else "a contact", "and no others" if c["all"] else "")
+        print("accepted:", f"{len(c['contacts'])} contacts" if c["all"] else "a contact",
+              "and no others" if c["all"] else "")
 
 
 if __name__ == "__main__":

@@ -26,8 +26,9 @@ class ContactData:
 
     @property
     def normal(self) -> Any:
-        """The unit normal of one of the two faces, (3,) float64: of the mesh that is not in the manager, of the object of
-        the manager that was asked, or of the object that was added first. Result.normals() has those of both faces."""
+        """The unit normal of one of the two faces, (3,) float64: of the mesh that is not in the manager, of the object
+        of the manager that was asked, or of the object that was added first. Result.normals() has those of both
+        faces."""
         return self._result._normal(self._row)
 
     @property
@@ -62,9 +63,10 @@ class DistanceData:
 class CollisionManager:
     """Named objects with transforms, and which of them collide: the interface of trimesh.collision.CollisionManager.
 
-    A mesh is an Object, a mesh of trimesh, PyVista or Open3D, or anything else with `vertices`, (n, 3) float, and `faces`,
-    (m, 3) or (m, 4) integers. All meshes are surfaces, while trimesh makes a solid of one that is convex: here an object wholly
-    inside another does not collide with it. Transforms are float64, (4, 4) or (3, 4), and any affine map.
+    A mesh is an Object, a mesh of trimesh, PyVista or Open3D, or anything else with `vertices`, (n, 3) float, and
+    `faces`, (m, 3) or (m, 4) integers. All meshes are surfaces, while trimesh makes a solid of one that is convex: here
+    an object wholly inside another does not collide with it. Transforms are float64, (4, 4) or (3, 4), and any affine
+    map.
 
     device: who answers, see open_device(); by default the CPU with all cores.
     """
@@ -88,7 +90,8 @@ class CollisionManager:
 
     def __getstate__(self) -> dict[str, Any]:
         if self._device is not None:
-            raise TypeError("a manager with a device of its own cannot be pickled; make one without, and give the device where it is loaded")
+            raise TypeError("a manager with a device of its own cannot be pickled; make one without, and give the "
+                            "device where it is loaded")
         return self.__dict__
 
     def add_object(self, name: Any, mesh: Any, transform: Any = None) -> Object:
@@ -162,7 +165,8 @@ class CollisionManager:
         """
         if not return_data:
             pairs = self._scene._pairs(first=not return_names, device=self._device)
-            return _answer({_in_order((self._names[a], self._names[b])) for a, b in pairs.tolist()}, len(pairs), return_names)
+            return _answer({_in_order((self._names[a], self._names[b])) for a, b in pairs.tolist()}, len(pairs),
+                           return_names)
         found = self._scene.contacts(contacts="all", device=self._device)
         named = [((self._names[a], self._names[b]), result) for a, b, result in found]
         return _answer({_in_order(names) for names, _ in named}, len(named), return_names, _data(named))
@@ -190,9 +194,9 @@ class CollisionManager:
                             return_data: bool = False) -> Any:
         """How far is a mesh that is not in the manager from the nearest object of it?
 
-        Returns the distance, 0 if they touch or cross and inf if the manager is empty; with return_name the name of that
-        object; with return_data a DistanceData, in which the mesh has the name "__external". With one of the two a tuple
-        of two, with both a tuple of three; None for the name and the data of an empty manager.
+        Returns the distance, 0 if they touch or cross and inf if the manager is empty; with return_name the name of
+        that object; with return_data a DistanceData, in which the mesh has the name "__external". With one of the two a
+        tuple of two, with both a tuple of three; None for the name and the data of an empty manager.
         """
         found = _alone(mesh, transform)[0]._nearest(self._scene)
         names = found and (_EXTERNAL, self._names[found[1]])
@@ -201,7 +205,8 @@ class CollisionManager:
     def min_distance_internal(self, name: Any = None, return_names: bool = False, return_data: bool = False) -> Any:
         """How far are the two nearest objects of the manager apart? name: only pairs with this object.
 
-        Returns as min_distance_single(); the names are a pair, as in in_collision_internal(). Ignored pairs are left out.
+        Returns as min_distance_single(); the names are a pair, as in in_collision_internal(). Ignored pairs are left
+        out.
         """
         found = self._scene._nearest(id=0 if name is None else self._id(name))
         names = found and tuple(self._names[number] for number in sorted(found[:2]))
@@ -226,13 +231,14 @@ class CollisionManager:
 
 
 def scene_to_collision(scene: Any, device: Device | None = None) -> tuple[CollisionManager, dict[Any, Object]]:
-    """A manager with all meshes of a trimesh.Scene in their places, by the names of the scene's nodes, and the Object of
-    each node. Nodes that show one mesh share its Object.
+    """A manager with all meshes of a trimesh.Scene in their places, by the names of the scene's nodes, and the Object
+    of each node. Nodes that show one mesh share its Object.
 
     device: as CollisionManager.
     """
     if not (hasattr(scene, "graph") and hasattr(scene, "geometry")):
-        raise TypeError(f"scene is a {type(scene).__name__}; give a trimesh.Scene, or a mesh to CollisionManager.add_object()")
+        raise TypeError(f"scene is a {type(scene).__name__}; give a trimesh.Scene, or a mesh to "
+                        "CollisionManager.add_object()")
     manager = CollisionManager(device)
     made: dict[Any, Object] = {}
     objects: dict[Any, Object] = {}
@@ -242,7 +248,8 @@ def scene_to_collision(scene: Any, device: Device | None = None) -> tuple[Collis
             try:
                 made[geometry] = _to_object(scene.geometry[geometry], "its geometry")
             except (TypeError, ValueError) as error:
-                raise type(error)(f"node {node!r}: {error}; or take it out: scene.delete_geometry({geometry!r})") from None
+                raise type(error)(
+                    f"node {node!r}: {error}; or take it out: scene.delete_geometry({geometry!r})") from None
         objects[node] = manager.add_object(node, made[geometry], transform)
     return manager, objects
 
@@ -261,7 +268,8 @@ def _in_order(names: tuple[Any, Any]) -> tuple[Any, Any]:
         return names
 
 
-def _least(found: tuple[int, int, Distance] | None, shown: Any, names: Any, return_names: bool, return_data: bool) -> Any:
+def _least(found: tuple[int, int, Distance] | None, shown: Any, names: Any, return_names: bool,
+           return_data: bool) -> Any:
     """What trimesh returns: a distance, and what was asked for."""
     answer: list[Any] = [np.inf if found is None else found[2].upper]
     if return_names:

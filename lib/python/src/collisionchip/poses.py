@@ -22,7 +22,8 @@ def _numbers(values: Any, count: int, name: str) -> Any:
 def _snapped(matrix: Any) -> Any:
     """Exactly the quarter turns that a matrix is within rounding of, or else the matrix."""
     near = np.rint(matrix)
-    if (np.abs(matrix - near) <= _NEAR).all() and (np.abs(near).sum(axis=0) == 1).all() and (np.abs(near).sum(axis=1) == 1).all():
+    if (np.abs(matrix - near) <= _NEAR).all() and (np.abs(near).sum(axis=0) == 1).all() and (
+        np.abs(near).sum(axis=1) == 1).all():
         return near + 0.0
     return matrix
 
@@ -57,20 +58,22 @@ def _of_rotation(rotation: Any) -> Any:
 
 def make_pose(translation: Any = (0, 0, 0), degrees: Any = None, *, rpy: Any = None, xyzw: Any = None, wxyz: Any = None,
               rotation: Any = None) -> Any:
-    """A pose, (4, 4) float64: a rotation, then a translation. Quarter turns are exact: their matrix has only 0, 1 and -1.
+    """A pose, (4, 4) float64: a rotation, then a translation. Quarter turns are exact: their matrix has only 0, 1 and
+    -1.
 
     translation: (3,), in the unit of the meshes. At most one of:
     degrees: (3,), angles about the fixed axes x, then y, then z.
     rpy: (3,), the same in radians, as in URDF: roll, pitch, yaw.
-    xyzw, wxyz: (4,), a quaternion of any length, its real part last (ROS, scipy) or first (Eigen's constructor, trimesh, MuJoCo).
-    rotation: scipy's Rotation, or a matrix (3, 3), which is taken as it is.
+    xyzw, wxyz: (4,), a quaternion of any length, its real part last (ROS, scipy) or first (Eigen's constructor,
+    trimesh, MuJoCo). rotation: scipy's Rotation, or a matrix (3, 3), which is taken as it is.
 
-    All but degrees are rounded themselves: a rotation whose matrix is within 3.6e-15 of one of quarter turns becomes exactly
-    that. Angles with few digits, such as 1.5708, are what they say.
+    All but degrees are rounded themselves: a rotation whose matrix is within 3.6e-15 of one of quarter turns becomes
+    exactly that. Angles with few digits, such as 1.5708, are what they say.
 
     Raises ValueError: another shape, numbers that are not finite, a quaternion of 0. Raises TypeError: two rotations.
     """
-    given = [name for name, value in (("degrees", degrees), ("rpy", rpy), ("xyzw", xyzw), ("wxyz", wxyz), ("rotation", rotation))
+    given = [name for name, value in (("degrees", degrees), ("rpy", rpy), ("xyzw", xyzw), ("wxyz", wxyz),
+                                      ("rotation", rotation))
              if value is not None]
     if len(given) > 1:
         raise TypeError(f"{' and '.join(given)} are given; give one rotation")

@@ -44,7 +44,8 @@ def show(page: bytes, path: str | os.PathLike[str] | None) -> View:
     if path is not None:
         view.save(path)
     elif not _in_notebook():
-        with tempfile.NamedTemporaryFile("w", encoding="utf-8", prefix="collisionchip-", suffix=".html", delete=False) as file:
+        with tempfile.NamedTemporaryFile("w", encoding="utf-8", prefix="collisionchip-", suffix=".html",
+                                         delete=False) as file:
             file.write(view.page)  # stays: the browser reads it later
         webbrowser.open(pathlib.Path(file.name).as_uri())
     return view
