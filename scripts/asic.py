@@ -270,9 +270,8 @@ def bits(expression, wide):
     escaped = lambda name: name + " " if name.startswith("\\") else name
     if expression.startswith("{"):
         return [bit for part in expression[1:-1].split(",") for bit in bits(part, wide)]
-    if found := re.fullmatch(r"(\S+?)\s*\[(\d+):(\d+)\]", expression):
-        if found[1] in wide:
-            return [f"{escaped(found[1])}[{i}]" for i in range(int(found[2]), int(found[3]) - 1, -1)]
+    if (found := re.fullmatch(r"(\S+?)\s*\[(\d+):(\d+)\]", expression)) and found[1] in wide:
+        return [f"{escaped(found[1])}[{i}]" for i in range(int(found[2]), int(found[3]) - 1, -1)]
     if found := re.fullmatch(r"(\d+)'h([0-9a-fx]+)", expression):
         value = int(found[2].replace("x", "0"), 16)
         return [f"1'b{value >> i & 1}" for i in range(int(found[1]) - 1, -1, -1)]

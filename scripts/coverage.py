@@ -83,8 +83,8 @@ def bin_table(bins):
     for groups, (count, reached) in rows.items():
         prefixes = groups.split(", ")
         lost = [text[4:] for text in missing if text[4:].startswith(prefixes[0]) and f", {prefixes[1]} " in text]
-        lines.append(f"| {groups} | {count} | {reached} | "
-                     f"{'; '.join(text.replace(prefixes[0] + ' ', '', 1).replace(prefixes[1] + ' ', '', 1) for text in lost)} |")
+        short = (text.replace(prefixes[0] + " ", "", 1).replace(prefixes[1] + " ", "", 1) for text in lost)
+        lines.append(f"| {groups} | {count} | {reached} | {'; '.join(short)} |")
     total = [sum(row[k] for row in rows.values()) for k in (0, 1)]
     lines.append(f"| all | {total[0]} | {total[1]} | |")
     return "\n".join(lines) + "\n", missing, total
@@ -154,7 +154,7 @@ def shown(build):
                                *(f"--object={path}" for path in programs[1:]),
                                *(ROOT / room for room in re.findall(r"^src:\*/(\S+)/\*$",
                                                                     CPP_ROOMS.read_text(), re.M))],
-                              check=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True).stdout
+                              check=True, capture_output=True, text=True).stdout
     except (OSError, subprocess.CalledProcessError) as error:
         raise Failed(
             f"llvm-cov (Debian's package llvm): {error} {getattr(error, 'stderr', '') or ''}".strip()) from error

@@ -258,7 +258,8 @@ def squeeze(text):
 
 
 DECLARATION = re.compile(r"\s*(?:parameter\s+integer\s+(?P<parameter>\w+)\s*=\s*(?P<value>[^,]*[^,\s])|"
-                         r"(?P<direction>input|output)\s+(?:wire|reg)\s+(?:signed\s+)?(?:\[(?P<top>[^\]]*):0\])?\s*(?P<port>\w+))\s*,?\s*$")
+                         r"(?P<direction>input|output)\s+(?:wire|reg)\s+(?:signed\s+)?(?:\[(?P<top>[^\]]*):0\])?\s*"
+                         r"(?P<port>\w+))\s*,?\s*$")
 
 
 def head(text, module):

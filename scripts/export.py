@@ -173,13 +173,13 @@ def constraints(top, mhz):
 # {top}: template. It constrains the one clock, {mhz:g} MHz: change that to yours.
 # {'All ports but cfg_error' if asynchronous else 'All ports'} belong to this clock, rst included (synchronous). Where the clock comes from your design and is constrained
 # there, leave this file out.
-"""
+"""  # noqa: E501  lines of what is written
     lpf = head + f"""# Lattice ECP5 (Diamond, nextpnr-ecp5). The ports are more than a package has pins: build the module inside your design,
 # and replace "clk" by the name of the clock there. nextpnr: FREQUENCY PORT for a pin, FREQUENCY NET for a clock of a PLL.
 FREQUENCY PORT "clk" {mhz:g} MHZ;
 # LOCATE COMP "clk" SITE "...";
 # IOBUF PORT "clk" IO_TYPE=LVCMOS33;
-"""
+"""  # noqa: E501  lines of what is written
     xdc = head + f"""# AMD (Vivado), for the module on its own: synth_design -mode out_of_context -top {top}.
 create_clock -name clk -period {period} [get_ports clk]
 {false_path}# A clock buffer of your design, so that timing counts its delay:
@@ -196,7 +196,7 @@ create_clock -name clk -period {period} [get_ports clk]
 # Ports that leave the device: values of your board.
 # set_input_delay -clock clk 0.000 [remove_from_collection [all_inputs] [get_ports clk]]
 # set_output_delay -clock clk 0.000 [all_outputs]
-"""
+"""  # noqa: E501  lines of what is written
     return {"lpf": lpf, "xdc": xdc, "sdc": sdc}
 
 
@@ -259,10 +259,12 @@ def readme(top, files, pairs, mhz, described):
         wrapper = "bench_subsystem.v " if top == SUBSYSTEM else ""
     compiled = f"iverilog -g2005 {macro}-s {bench} -o bench.vvp {bench}.v {wrapper}{top}.v"
     more = {
-        SUBSYSTEM: """- [Registers](docs/hardware/registers.md), for C++ `registers.hpp`. `simulation_models.v` with parameter `SIMULATION` = 1: a slot holds all modules, bitstreams exchange them.
-""",
-        CHIP: """- [Programmer's guide](docs/hardware/programmers-guide.md), [registers](docs/hardware/chip-registers.md), [images and records](docs/hardware/image.md); for C++ `chip_registers.hpp`, a driver in C `chip_poll.c`. `simulation_models.v` is for `SWAPS` = 1 with `SIMULATION` = 1.
-"""}.get(top, "")
+        SUBSYSTEM: "- [Registers](docs/hardware/registers.md), for C++ `registers.hpp`. `simulation_models.v` with "
+                   "parameter `SIMULATION` = 1: a slot holds all modules, bitstreams exchange them.\n",
+        CHIP: "- [Programmer's guide](docs/hardware/programmers-guide.md), "
+              "[registers](docs/hardware/chip-registers.md), [images and records](docs/hardware/image.md); "
+              "for C++ `chip_registers.hpp`, a driver in C `chip_poll.c`. "
+              "`simulation_models.v` is for `SWAPS` = 1 with `SIMULATION` = 1.\n"}.get(top, "")
     integration = chip_notes(mhz) if top == CHIP else ""
     ip_xact = (f"- `{top}.xml`: IP-XACT component, IEEE 1685-2014: buses, registers, ports, parameters.\n"
                if described else "")
@@ -277,7 +279,7 @@ def readme(top, files, pairs, mhz, described):
 
       {compiled}
       {run}
-{integration}"""
+{integration}"""  # noqa: E501  lines of what is written
 
 
 def chip_notes(mhz):
@@ -296,7 +298,7 @@ def chip_notes(mhz):
 - **Records** are 16 bytes in one beat and must arrive whole: no bus narrower than 128 bit between chip and memory.
 - **Size and clock**: default parameters after synthesis for ECP5: {size["sites"]} sites of LUT4, {size["FF"]} flip-flops, {size["DSP"]} multiplier blocks, {size["block RAM"]} block RAMs of 18 kbit. The constraints say {mhz:g} MHz, unless you chose
   another clock: it is that of the chip with the triangle test, routed for ECP5 grade 6 with one seed; with the quad test, or for another family, it was never routed. Begin lower.
-"""
+"""  # noqa: E501  lines of what is written
 
 
 # ---- all of it
@@ -307,7 +309,7 @@ def write_vectors(program, *arguments):
         result = subprocess.run([program, *map(str, arguments)], stdout=subprocess.PIPE,
                                 stderr=subprocess.STDOUT, text=True)
     except OSError:
-        raise ExportError(f"{program} is missing: make export builds it")
+        raise ExportError(f"{program} is missing: make export builds it") from None
     if result.returncode:
         raise ExportError(result.stdout.strip())
 

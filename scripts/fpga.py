@@ -918,7 +918,9 @@ def name_tree():
             "before")
         return
     text = re.sub(r"git tree `[0-9a-f]{40}` of `rtl/`\n\(commit \w+;",
-                  f"git tree `{git('rev-parse', 'HEAD:rtl')}` of `rtl/`\n(commit {git('rev-parse', '--short', 'HEAD')};", PAGE.read_text())
+                  f"git tree `{git('rev-parse', 'HEAD:rtl')}` of `rtl/`\n"
+                  f"(commit {git('rev-parse', '--short', 'HEAD')};",
+                  PAGE.read_text())
     PAGE.write_text(text)
 
 

@@ -63,8 +63,13 @@ COUNTS = ("mutants", "proved", "bounded", "killed", "differs", "undecided")
 # module `ROOM/N`: N modules of a room together, until one of the room is recorded
 COLUMNS = ("module", *COUNTS, "commit")
 SELECTOR_W = 16
-SELECT = 'extern "C" int cchip_mutant();\n#include <cstdlib>\nint cchip_mutant() {\n  const char* chosen = std::getenv("CCHIP_MUTANT");\n' \
-         "  return chosen ? std::atoi(chosen) : 0;\n}\n"
+SELECT = """extern "C" int cchip_mutant();
+#include <cstdlib>
+int cchip_mutant() {
+  const char* chosen = std::getenv("CCHIP_MUTANT");
+  return chosen ? std::atoi(chosen) : 0;
+}
+"""
 
 
 class Failed(Exception):
@@ -340,7 +345,7 @@ class Module:
         (self.folder / f"{name}.il").unlink()
         return text
 
-    @functools.lru_cache(maxsize=1)
+    @functools.lru_cache(maxsize=1)  # noqa: B019  one object for each module, kept to the end
     def original(self):
         return self.purged("", "gold")
 
@@ -438,7 +443,7 @@ def out_of_date(chosen):
     for module in chosen:
         results = module.results()
         for number, row in explained()[module.name].items() if results else []:
-            result = results[number] if number in results else {}
+            result = results.get(number, {})
             wrong.append(wrong_sentence(ALIVE, row, module.place(int(number)) if result else "none",
                                         "killed" not in result and result.get("same") not in ("proved", "bounded")))
     return [what for what in wrong if what]

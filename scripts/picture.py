@@ -45,8 +45,8 @@ def normalised(faces, edges):
     """The same about the origin, the faces with a box of side 1: lengths of any unit can be multiplied then."""
     corners = [corner for corners, _ in faces for corner in corners]
     least, greatest = (tuple(f(axis) for axis in zip(*corners)) for f in (min, max))
-    size = max(g / 2 - l / 2 for g, l in zip(greatest, least)) or 1.0   # of half the box: the whole may overflow
-    return tuple([([tuple((x / 2 - g / 4 - l / 4) / size for x, l, g in zip(corner, least, greatest))
+    size = max(g / 2 - s / 2 for g, s in zip(greatest, least)) or 1.0   # of half the box: the whole may overflow
+    return tuple([([tuple((x / 2 - g / 4 - s / 4) / size for x, s, g in zip(corner, least, greatest))
                     for corner in corners], colour)
                   for corners, colour in part] for part in (faces, edges))
 
@@ -134,7 +134,7 @@ class Camera:
         self.right = unit(cross((0, 0, 1) if upright else (0, 1, 0), self.back))
         self.up = cross(self.back, self.right)
         self.lights = [
-            unit([sum(l * axis[i] for l, axis in zip(light, (self.right, self.up, self.back))) for i in range(3)])
+            unit([sum(x * axis[i] for x, axis in zip(light, (self.right, self.up, self.back))) for i in range(3)])
                        for light in (KEY_LIGHT, FILL_LIGHT)]
         self.half = unit(tuple(a + b for a, b in zip(self.lights[0], self.back)))
         self.target, self.distance, self.span = target, distance, span

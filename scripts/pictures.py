@@ -209,11 +209,10 @@ def clocks():
         if "value" in entry and isinstance(entry["value"], int):
             found[entry["name"]] = entry["value"]
     for entry in definitions():
-        if entry.get("name", "").endswith("LATENCY") or entry.get("name") == "PAIR_OVERHEAD":
-            if "expr" in entry:
-                code = re.sub(r"\b((?!LEVELS|LIMBS)[A-Z][A-Z0-9_]*)\b(?!\()", lambda m: f"value({m[1]!r})",
-                              entry["expr"])
-                found[entry["name"]] = (entry["args"], code)
+        name = entry.get("name", "")
+        if "expr" in entry and (name.endswith("LATENCY") or name == "PAIR_OVERHEAD"):
+            code = re.sub(r"\b((?!LEVELS|LIMBS)[A-Z][A-Z0-9_]*)\b(?!\()", lambda m: f"value({m[1]!r})", entry["expr"])
+            found[name] = (entry["args"], code)
 
     def value(name, *arguments):
         if not isinstance(found[name], tuple):

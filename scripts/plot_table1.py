@@ -32,8 +32,8 @@ def run(program):
     with tempfile.TemporaryDirectory() as folder:
         curves = pathlib.Path(folder, "curves.csv")
         try:
-            result = subprocess.run([program, "--csv", curves], stdout=subprocess.PIPE,
-                                    stderr=subprocess.PIPE, text=True)
+            result = subprocess.run([program, "--csv", curves], capture_output=True,
+                                    text=True)
         except OSError as error:
             fail(f"{program} cannot be run ({error.strerror}); build it with: scripts/run table1")
         if result.returncode:

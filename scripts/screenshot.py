@@ -70,8 +70,10 @@ def window(command, seconds=40):
     """A picture of what the command shows, once it no longer changes."""
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / "window.png"
-        script = f'"$@" > /dev/null 2>&1 & program=$!; i=0; old=none\nwhile [ $i -lt {seconds} ]; do sleep 2; i=$((i + 2)); import -window root "{path}"\n' \
-                 f'new=$(convert "{path}" -format "%# %k" info:); [ "$new" = "$old" ] && [ "${{new#* }}" -gt 20 ] && break; old=$new; done\nkill $program'
+        script = f'"$@" > /dev/null 2>&1 & program=$!; i=0; old=none\n' \
+                 f'while [ $i -lt {seconds} ]; do sleep 2; i=$((i + 2)); import -window root "{path}"\n' \
+                 f'new=$(convert "{path}" -format "%# %k" info:); [ "$new" = "$old" ] && [ "${{new#* }}" -gt 20 ] && ' \
+                 f'break; old=$new; done\nkill $program'
         subprocess.run(["xvfb-run", "-a", "-s", f"-screen 0 {WIDTH}x{HEIGHT}x24", "sh", "-c", script, "sh", *command],
                        check=False, timeout=seconds + 60)
         if not path.exists():

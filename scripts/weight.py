@@ -19,7 +19,9 @@ ROOMS = [("rtl", r"^rtl/"), ("command", r"^(lib/app|lib/program|sim/app)/"),
          ("python", r"^(lib/)?python/(src|collisionchip)/|^(lib/)?python/[^/]*$"),
          ("tests", r"^(tests|(lib/)?python/tests)/"), ("examples", r"^(examples|(lib/)?python/examples)/"),
          ("library",
-          r"^(lib/|cpp_ref/(include/cchip|src)/(cpu|collide|mesh|mesh_io|certificate|geometry|device|exact|bvh)/|cpp_ref/include/cchip/internal/(exact|bvh|collide|geometry|certificate)/)"), ("models and host", r"^cpp_ref/"),
+          r"^(lib/|cpp_ref/(include/cchip|src)/(cpu|collide|mesh|mesh_io|certificate|geometry|device|exact|bvh)/|"
+          r"cpp_ref/include/cchip/internal/(exact|bvh|collide|geometry|certificate)/)"),
+         ("models and host", r"^cpp_ref/"),
          ("simulation", r"^sim/"), ("bench", r"^bench/"),
          ("scripts", r"^(scripts|workflow|cmake|\.ci)/|^(Makefile|CMakeLists\.txt)$")]
 # Pages that a script writes whole, and blocks in others.

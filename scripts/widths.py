@@ -111,8 +111,8 @@ LIMITS = {
     ("cchip_pose_setup", "gen_component[].size"): lambda p: (
         0, (1 << 18) - (1 << 9) + 2, "a legal map has |m_j| < 2 - 2^-8; each of its three entries is rounded"),
     ("cchip_pose_setup", "difference"): lambda p: (0, (1 << 18) - 1, "b >= c: they are sorted"),
-    ("cchip_bv_offset", "step_q3"): lambda p: (-1, 18,
-                                               "the grid's step is at least that of B less one, at most that of A or B"),
+    ("cchip_bv_offset", "step_q3"): lambda p: (
+        -1, 18, "the grid's step is at least that of B less one, at most that of A or B"),
     ("cchip_bv_offset", "x_q3"): lambda p: (0, (1 << 17) - 1, "epsilon is at least 1: t is rounded"),
     ("cchip_bv_offset", "low"): lambda p: (0, 8, "step_q3 + 1 where step_q3 is below 7"),
     ("cchip_vertex_transform", "gen_row[].gen_whole.u_dot.xy_q"): lambda p: (
@@ -162,7 +162,8 @@ for name in ("gen_dot[].u_dot.xy_q", "dot"):
 REASONS = [
     ("", r".*gen_sum\[\]\.sum_q", "limbs of a product add up modulo the width of the product, which fits"),
     ("cchip_bv_lane_a", r"(face|corner)\d_q\d|.*plane_q[89]|bits 16:5 of .*plane_q9",
-     "planes are numbers modulo their width: those of volumes that overlap fit, and others are apart however they wrap"),
+     "planes are numbers modulo their width: those of volumes that overlap fit, and others are apart however "
+     "they wrap"),
     ("cchip_bv_lane_a", r"bits 21:11 of .*\.p",
      "two products in one: f face + c corner is at most 14 (f + c) < 2^11, because b + c <= 2 + 2^-5; f corner < 2^11 "
      "is below it"),
@@ -241,7 +242,7 @@ class Netlist:
                       + f"hierarchy -check -top {module}; proc; flatten; opt_expr -mux_undef; opt_clean; write_json "
                         f"{out}")
             subprocess.run(["yosys", "-q", "-p", script], cwd=ROOT, check=True)
-            for name, about in json.loads(out.read_text())["modules"].items():
+            for about in json.loads(out.read_text())["modules"].values():
                 if int(about["attributes"].get("top", "0"), 2):
                     return about
         sys.exit(f"widths: no module {module}")
@@ -571,15 +572,20 @@ def judge(netlist, place):
 
 
 def rows_of(netlist):
-    """One row for each word: the widest of its copies."""
-    rows = {}
+    """One row for each word: of its copies (the elements of a generate block) with the fewest bits to spare, the union
+    of their ranges."""
+    copies = {}
     for place in netlist.analyse():
-        why = judge(netlist, place)
-        row = (place["what"], place["range"], needed(place["range"]), place["has"], why, place["source"])
-        kept = rows.get(row[0])
-        if kept is None or why is None or (kept[4] is not None and row[2] - row[3] > kept[2] - kept[3]):
-            rows[row[0]] = row
-    return sorted(rows.values())
+        row = (place["what"], place["range"], needed(place["range"]), place["has"], judge(netlist, place),
+               place["source"])
+        copies.setdefault(row[0], []).append(row)
+    rows = []
+    for found in copies.values():
+        what, _, bits, has, why, source = max(
+            found, key=lambda row: (row[4] is None, row[2] - row[3], row[3], row[4] or "", row[5]))
+        ranges = [row[1] for row in found if row[2:5] == (bits, has, why)]
+        rows.append((what, (min(low for low, _ in ranges), max(high for _, high in ranges)), bits, has, why, source))
+    return sorted(rows)
 
 
 def label(module, parameters):
@@ -591,8 +597,10 @@ def power(n):
     for sign, size in ((1, n), (-1, -n)):
         for more in (0, -1, 1):
             if size > 4096 and (size - more) & (size - more - 1) == 0:
-                return f"{'-' if sign < 0 else ''}{'(' if more and sign < 0 else ''}2^{(size - more).bit_length() - 1}" + (
-                    (f" + {more}" if more > 0 else f" - {-more}") if more else "") + (")" if more and sign < 0 else "")
+                text = f"2^{(size - more).bit_length() - 1}"
+                if more:
+                    text += f" + {more}" if more > 0 else f" - {-more}"
+                return text if sign > 0 else f"-({text})" if more else f"-{text}"
     return str(n)
 
 
@@ -633,7 +641,7 @@ def one_bit_less(results):
     """Each word in one bit less than it needs at least, and less than it has: does the bound refuse it?"""
     refused = spare = reasoned = 0
     for _, _, rows in results:
-        for what, interval, bits, has, why, _ in rows:
+        for _, interval, _, has, why, _ in rows:
             if why != "interval" and not (why or "").startswith("at most so"):
                 reasoned += 1
             elif Netlist.fits(interval, has - 1):

@@ -58,7 +58,8 @@ KINDS = {"random": ("cchip_campaign", PART_PAIRS, JUDGED + [None] * 3, "pairs"),
 BY_SEED = ("chip", "faults")
 NO_COUNTS = {"seconds", "seed", "bins", "exchanges", "clocks_mean"}  # of a last line
 GOOD = {"pairs", "hits", "queries", "swaps", "contacts", "open", "fallbacks", "rounds", "resets", "bus_resets",
-        "damaged_images", "faults", "near", "points", "with_cuts", "apart", "touching", "crossing", "bound_cases", "rtl_results"}  # may be over 0
+        "damaged_images", "faults", "near", "points", "with_cuts", "apart", "touching", "crossing", "bound_cases",
+        "rtl_results"}  # may be over 0
 
 
 class Refused(Exception):

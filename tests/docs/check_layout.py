@@ -47,7 +47,8 @@ const settled = () => new Promise(done => setTimeout(done, 60));
         const inner = block.tagName == 'PRE' ? block.querySelector('code') : block;
         const excess = Math.max(block.getBoundingClientRect().right - right, inner.scrollWidth - inner.clientWidth);
         if (excess > 1 && (width > 1000 || block.tagName == 'IMG')) {
-          report(`${block.tagName.toLowerCase()} is ${Math.round(excess)} px too wide: ${(block.alt || block.innerText).trim().slice(0, 60).replace(/\\s+/g, ' ')}`);
+          const words = (block.alt || block.innerText).trim().slice(0, 60).replace(/\\s+/g, ' ');
+          report(`${block.tagName.toLowerCase()} is ${Math.round(excess)} px too wide: ${words}`);
         }
       }
     }

@@ -473,8 +473,8 @@ def carry(names):
                            for section in ("options", "engines"))
                 was = netlist(name, task, root) if same else None
                 same = was is not None and was == netlist(name, task, ROOT)
-        bar.say(f"{name} {task}: "
-                f"{'the same netlist as at ' + row['commit'] if same else 'another netlist, or the sources of its proof are not at ' + row['commit']}")
+        verdict = "the same netlist as" if same else "another netlist, or the sources of its proof are not"
+        bar.say(f"{name} {task}: {verdict} at {row['commit']}")
         left += not same
         if same:
             taken[name, task] = {**row, "sources": sources(name)}
@@ -511,8 +511,11 @@ def table(rows):
     lines = ["| module | task | how far | s | commit | sources |", "|---|---|---|---|---|---|"]
     for name, task in all_tasks():
         row = rows.get((name, task))
-        lines.append(f"| {name} | `{task}` | " + (f"{row['result']} | {row['seconds']} | {row['commit']} | "
-                                                    f"{'of today' if row['sources'] == sources(name) else '**changed since**'} |" if row else "not run | | | |"))
+        result = "not run | | | |"
+        if row:
+            age = "of today" if row["sources"] == sources(name) else "**changed since**"
+            result = f"{row['result']} | {row['seconds']} | {row['commit']} | {age} |"
+        lines.append(f"| {name} | `{task}` | {result}")
     return "\n".join(lines) + "\n"
 
 

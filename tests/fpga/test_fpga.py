@@ -180,9 +180,9 @@ class Floorplan(unittest.TestCase):
 
     def test_rams_of_the_same_bits_lie_beside_each_other(self):
         found = fpga.floorplan.anchors(self.chip())
-        column = lambda port, block: int(re.search(r"X(\d+)",
-                                                   found[
-                                                       f"u_dut.u_core.u_broad_phase.u_get_data.u_pairs.gen_port[{port}].u_lines.gen_block[{block}].u_block"])[1])
+        pairs = "u_dut.u_core.u_broad_phase.u_get_data.u_pairs"
+        name = lambda port, block: f"{pairs}.gen_port[{port}].u_lines.gen_block[{block}].u_block"
+        column = lambda port, block: int(re.search(r"X(\d+)", found[name(port, block)])[1])
         self.assertTrue(all(abs(column(0, block) - column(1, block)) <= 3 for block in range(14)))
 
     def test_more_than_the_device_has_is_an_error(self):
@@ -235,7 +235,7 @@ class Placement(unittest.TestCase):
       (SETUPHOLD (posedge DI) (posedge CLK) (10:20:35) (0:0:0))
       (INSTANCE u_dut.u_core.u_y.u_ram.mem.0.0)
       (SETUPHOLD (posedge ADA3) (posedge CLKA) (100:100:100) (0:0:0))
-"""
+"""  # noqa: E501  lines of nextpnr
 
     def setUp(self):
         self.timing = placed.Placed(json.dumps(self.NETLIST), self.DELAYS)

@@ -148,7 +148,7 @@ def chip(row, before, after):
 
     def number(bit):
         return next((netlist.numbers[name] for name in names.get(bit, ()) if name in netlist.numbers), None)
-    for name, cell in list(netlist.cells.items()):
+    for name in list(netlist.cells):
         if name.startswith(("in_TRELLIS_FF", "shift", "out_r", "fold", "q_TRELLIS", "q$", "d$", "clk$")):
             del netlist.cells[name]
     clock = next(cell["connections"]["CLKO"][0] for cell in netlist.cells.values() if cell["type"] == "DCCA")

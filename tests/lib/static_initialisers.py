@@ -24,9 +24,9 @@ for library in libraries:
         if member:
             source = member.group(1)
             seen += 1
-        elif re.search(r"_GLOBAL__sub_I|__static_initialization_and_destruction|__cxx_global_var_init", line):
-            if source not in ALLOWED:
-                bad.append(f"{library}: {source}: {line.split(maxsplit=2)[-1]}")
+        elif source not in ALLOWED and re.search(r"_GLOBAL__sub_I|__static_initialization_and_destruction|"
+                                                 r"__cxx_global_var_init", line):
+            bad.append(f"{library}: {source}: {line.split(maxsplit=2)[-1]}")
 if seen < len(libraries):
     sys.exit(f"static_initialisers.py: {seen} object files in {len(libraries)} libraries: is {nm} the right one?")
 for line in bad:

@@ -26,7 +26,8 @@ EXACT = {
     "trimesh": "import trimesh; m = trimesh.load(P, process=False); v, faces, c, e = m.vertices, m.faces, "
                "m.visual.vertex_colors[:, :3].tolist(), None",
     "meshio": "import meshio; m = meshio.read(P); v, faces = m.points, [f for b in m.cells for f in b.data]; "
-              "c = [[int(m.point_data[k][i]) % 256 for k in ('red', 'green', 'blue')] for i in range(len(v))]; e = None",
+              "c = [[int(m.point_data[k][i]) % 256 for k in ('red', 'green', 'blue')] for i in range(len(v))]; "
+              "e = None",
     "plyfile": "import plyfile; m = plyfile.PlyData.read(P); a = m['vertex']; v = [[a[k][i] for k in 'xyz'] for i in "
                "range(len(a.data))]; "
                "faces = m['face']['vertex_indices']; c = [[int(a[k][i]) for k in ('red', 'green', 'blue')] for i in "

@@ -22,8 +22,8 @@ with tempfile.TemporaryDirectory() as folder:
     for options in ([], ["--contacts", "first"], ["--counts", "crossing"], ["--contacts", "first", "--relation"]):
         for move in ([0.5, 0.25, 0.125], [1, 0.75, 0.75], [1.0000000000000002, 0, 0], [0, 0, 0], [5, 0, 0]):
             command = [cchip, "collide", cube, cube, "--pose", ",".join(map(str, move)), "--format", "csv", *options]
-            answer = subprocess.run([*command, "--certificate", proof], check=True, stdout=subprocess.PIPE,
-                                    stderr=subprocess.PIPE, text=True)
+            answer = subprocess.run([*command, "--certificate", proof], check=True, capture_output=True,
+                                    text=True)
             pose = identity[:]
             pose[3::4] = move
             lines = proof.read_text().splitlines()

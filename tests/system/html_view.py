@@ -72,7 +72,8 @@ window.addEventListener("load", () => {
   const pixels = copy.getContext("2d").getImageData(copy.width / 2 - 40, copy.height / 2 - 40, 80, 80).data;
   let blue = 0;
   for (let i = 0; i < pixels.length; i += 4) blue += pixels[i + 2] > pixels[i] ? 1 : 0;
-  canvas.dispatchEvent(new MouseEvent("click", {clientX: frame.left + frame.width / 2, clientY: frame.top + frame.height / 2}));
+  const middle = {clientX: frame.left + frame.width / 2, clientY: frame.top + frame.height / 2};
+  canvas.dispatchEvent(new MouseEvent("click", middle));
   const result = document.createElement("pre");
   result.id = "result";
   result.textContent = JSON.stringify({blue, all: pixels.length / 4, status: byId("status").textContent});

@@ -64,8 +64,8 @@ with tempfile.TemporaryDirectory() as temporary:
         for option in re.findall(r"^  (?:-\w,)?(--[\w-]+)", text, re.M):
             expect(option in re.sub(r"\\f[BIRP]", "", shown), True, f"{page.name}: {option}")
         if shutil.which("man"):
-            found = subprocess.run(["man", "--warnings", "-l", page], stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE, text=True)
+            found = subprocess.run(["man", "--warnings", "-l", page], capture_output=True,
+                                   text=True)
             expect((found.returncode, found.stderr), (0, ""), f"man {page.name}")
             expect("OPTIONS" in found.stdout, True, f"{page.name}: options")
         if shutil.which("mandoc"):

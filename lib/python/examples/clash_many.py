@@ -140,10 +140,8 @@ def main():
     listed, overlaps = [], {}
     with (Client(scheduler) if scheduler
           else Client(LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None))) as client:
-        done = 0
-        for a, b, relation, contacts, solids, distance, found in relate_pairs(
-            client, parts, pairs, clearance=options.clearance, inside=options.inside):
-            done += 1
+        related = relate_pairs(client, parts, pairs, clearance=options.clearance, inside=options.inside)
+        for done, (a, b, relation, contacts, solids, distance, found) in enumerate(related, 1):
             overlaps.update((files[part].name, overlap) for part, overlap in zip((a, b), found) if overlap)
             if sys.stderr.isatty() or done % 1000 == 0 or done == len(pairs):
                 print(f"\r{done} of {len(pairs)} pairs", end="" if done < len(pairs) else "\n",

@@ -25,8 +25,7 @@ def write_box(path, least, greatest, faces=6):
 
 
 def run(*arguments):
-    return subprocess.run([sys.executable, EXAMPLE, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                          text=True, timeout=120)
+    return subprocess.run([sys.executable, EXAMPLE, *arguments], capture_output=True, text=True, timeout=120)
 
 
 def test_what_pairs_are(tmp_path):

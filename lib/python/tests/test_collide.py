@@ -449,9 +449,9 @@ def test_all_stats():
 
 @pytest.mark.skipif(not os.path.isdir("/proc/self/task"), reason="counts threads as Linux shows them")
 def test_threads_share_the_device_of_all_cores():
-    program = """
+    program = f"""
 import os, sys, threading
-sys.path[:0] = {path!r}
+sys.path[:0] = {sys.path!r}
 import numpy as np
 from collisionchip import Object, collide_many
 cube = Object([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)],
@@ -469,7 +469,7 @@ ready.wait()
 print(len(os.listdir("/proc/self/task")) - before - 8 < (os.cpu_count() or 1), wrong)
 ready.wait()
 for thread in threads: thread.join()
-""".format(path=sys.path)
+"""
     assert subprocess.run([sys.executable, "-c", program], capture_output=True, text=True,
                           check=True).stdout == "True []\n"
 
@@ -483,14 +483,14 @@ def test_threads_that_flush_small_numbers_to_zero(tmp_path):
     library = tmp_path / "flush.so"
     if subprocess.run(["cc", "-shared", "-fPIC", "-o", library, tmp_path / "flush.c"], check=False).returncode:
         pytest.skip("no C compiler")
-    program = """
+    program = f"""
 import ctypes, sys
-sys.path[:0] = {path!r}
+sys.path[:0] = {sys.path!r}
 import numpy as np
 from collisionchip import CollisionManager, Object, Scene, collide, collide_many, open_device
 vertices = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * 2.0**-400
 faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
-library = ctypes.CDLL({library!r})
+library = ctypes.CDLL({str(library)!r})
 library.flush()
 cube = Object(vertices, faces)
 scene = Scene()
@@ -499,7 +499,7 @@ scene.set_pose(ids[0], None)
 print(collide(cube, None, cube, None).hit, collide_many(cube, None, cube, [np.eye(4)] * 100).all(),
       len(scene.contacts()), len(cube.self_contacts()), cube.moved(vertices).face_count,
       collide(cube, None, cube, None, device=open_device("cpu", threads=2)).hit, library.flushes() == 0x8040)
-""".format(path=sys.path, library=str(library))
+"""
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
     assert (done.stdout, done.stderr) == ("True True 1 0 6 True True\n", "")
 

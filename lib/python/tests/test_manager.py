@@ -98,7 +98,7 @@ def test_what_is_not_offered():
     manager = row(1)
     contact = manager.in_collision_single(Mesh, return_data=True)[1][0]
     with pytest.raises(NotImplementedError):
-        contact.depth
+        _ = contact.depth
 
 
 def test_contact_data_has_a_common_point_and_a_normal():
@@ -207,7 +207,7 @@ def test_least_distance_of_many_asks_about_few():
         pose[:3, 3] = 4 * (i % 10), 4 * (i // 10 % 10), 4 * (i // 100)
         manager.add_object(i, part, pose)
     start = time.process_time()
-    for i in range(1, 1000):
+    for _ in range(1, 1000):
         distance(part, None, part, shift(60), stop_above=1)
     one = (time.process_time() - start) / 999
     start = time.process_time()

@@ -158,14 +158,14 @@ def check(meshes, poses, lines):
         require(type(c["all"]) is bool and c["least"] in ("touching", "crossing"), "an unknown claim")
         hashes = [hash_mesh(*m) for m in meshes] + [hash_words(struct.pack("<24d", *(x + 0.0 for x in poses)))]
         require([c["mesh_a"], c["mesh_b"], c["poses"]] == hashes, "the certificate is of other meshes or poses")
-        points, found, orders = [placed(m[0], p) for m, p in zip(meshes, (poses[:12], poses[12:]))], {}, (
-            expanded(c["order_a"]), expanded(c["order_b"]))
+        points = [placed(m[0], p) for m, p in zip(meshes, (poses[:12], poses[12:]))]
+        found, orders = {}, (expanded(c["order_a"]), expanded(c["order_b"]))
         once = [sorted(o) == [*range(c["all"] * len(m[1]))] for o, m in zip(orders, meshes)]
         require(all(once), "an order does not hold each face once")
         require(all(orders) if c["all"] else len(cells) == 1, "no faces, or other than one cell for one contact")
         todo = [[(0, len(order)) for order in orders]]
         corners = lambda side, face: [points[side][v] for v in meshes[side][1][face]]
-        for number, line in enumerate(cells):
+        for line in cells:
             cell = parse(line)
             require(todo and "collisionchip_certificate" not in cell, "a cell too many")
             sets, kind = todo.pop(), cell["cell"]
@@ -203,7 +203,7 @@ def read_mesh(text):
     else:
         vertices = [line[1:] for line in lines if line[0] == "v"]
         faces = [[int(x.split("/")[0]) - 1 for x in line[1:]] for line in lines if line[0] == "f"]
-    if not all(len(f) in (3, 4) and 0 <= min(f) and max(f) < len(vertices) for f in faces):
+    if not all(len(f) in (3, 4) and min(f) >= 0 and max(f) < len(vertices) for f in faces):
         raise ValueError("faces must be triangles and quads of vertices that the file has")
     return [[float(x) for x in v[:3]] for v in vertices], faces, list(range(len(faces)))
 
@@ -211,10 +211,12 @@ def read_mesh(text):
 def main(arguments):
     try:
         require(len(arguments) == 4, "usage:" + __doc__)
-        texts = [open(path, encoding="utf-8", newline="\n" if n == 3 else None).read()
-                 for n, path in enumerate(arguments)]
-        meshes, poses, certificates = [read_mesh(text)
-                                       for text in texts[:2]], [float(x) for x in texts[2].split()], split(texts[3])
+        texts = []
+        for n, path in enumerate(arguments):
+            with open(path, encoding="utf-8", newline="\n" if n == 3 else None) as file:
+                texts.append(file.read())
+        meshes, poses = [read_mesh(text) for text in texts[:2]], [float(x) for x in texts[2].split()]
+        certificates = split(texts[3])
         if not certificates or len(poses) != 24 * len(certificates):
             raise ValueError(f"{len(poses)} numbers in POSES, but {len(certificates)} certificates; give 24 for each")
         claims = [check(meshes, poses[24 * n:24 * n + 24], lines) for n, lines in enumerate(certificates)]
