@@ -209,7 +209,7 @@ module cchip_calc_result #(
   );
 
   // ---- records: those of one leaf pair after the other, and ends of queries in between
-  localparam [2:0] IDLE = 3'd0, CHOOSE = 3'd1, READ = 3'd2, READ2 = 3'd3, LOAD = 3'd4, GIVE = 3'd5;
+  localparam [2:0] IDLE = 3'd0, CHOOSE = 3'd1, READ = 3'd2, READ2 = 3'd3, LOAD = 3'd4, SEND = 3'd5;
   reg [2:0] state_q;
   reg [3:0] left_q;  // primitive pairs whose record has not been chosen
   reg definite_now_q, emitted_q, done_ready_q, record_valid_q;
@@ -244,7 +244,7 @@ module cchip_calc_result #(
         record_q       <= s_done_data;
         record_valid_q <= 1'b1;
         done_ready_q   <= 1'b1;
-        state_q        <= GIVE;
+        state_q        <= SEND;
       end
       CHOOSE: begin
         face_q         <= {sent_number, next_number};
@@ -257,7 +257,7 @@ module cchip_calc_result #(
       LOAD: begin
         record_q       <= pair_record;
         record_valid_q <= 1'b1;
-        state_q        <= GIVE;
+        state_q        <= SEND;
       end
       default:  // GIVE
       if (m_record_ready) begin

@@ -186,7 +186,7 @@ module cchip_chip_core #(
   localparam integer CONTEXT_W = $clog2(QUERIES);
   localparam integer LEAF_W = $clog2(LEAF_NUMBERS);
   localparam integer POINT_W = `CCHIP_POINT_W(COORD_W);
-  localparam integer SLOT_W = $clog2(MISSES);
+  localparam integer READ_SLOT_W = $clog2(MISSES);
   localparam integer KINDS = 3;
   localparam integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES);
   localparam integer PLACE_W = `CCHIP_KIND_BITS(KINDS) + $clog2(QUEUE_DEPTH);
@@ -218,9 +218,9 @@ module cchip_chip_core #(
 
   // ---- memory: client 0 is the cache, client 1 the query ring
   wire [1:0] read_valid, beat_valid;
-  wire [2*SLOT_W-1:0] read_slot;
+  wire [2*READ_SLOT_W-1:0] read_slot;
   wire [115:0] read_line;
-  wire [SLOT_W-1:0] beat_slot;
+  wire [READ_SLOT_W-1:0] beat_slot;
   wire [2:0] beat;
   wire beat_last;
   wire [`CCHIP_READ_CODE_W-1:0] beat_code;
@@ -278,7 +278,7 @@ module cchip_chip_core #(
       .failed       (query_failed),
       .idle         (queries_idle),
       .m_read_valid (read_valid[1]),
-      .m_read_slot  (read_slot[SLOT_W+:SLOT_W]),
+      .m_read_slot  (read_slot[READ_SLOT_W+:READ_SLOT_W]),
       .m_read_line  (read_line[58+:58]),
       .s_read_valid (beat_valid[1]),
       .s_read_slot  (beat_slot),
@@ -368,7 +368,7 @@ module cchip_chip_core #(
       .count_again       (count_again),
       .count_box_busy    (count_box_busy),
       .m_read_valid      (read_valid[0]),
-      .m_read_slot       (read_slot[0+:SLOT_W]),
+      .m_read_slot       (read_slot[0+:READ_SLOT_W]),
       .m_read_line       (read_line[0+:58]),
       .s_read_valid      (beat_valid[0]),
       .s_read_slot       (beat_slot),

@@ -77,7 +77,7 @@ module cchip_slot_ledger #(
   localparam [2:0] CLEAR = 3'd0;  // every number is made free
   localparam [2:0] WORK = 3'd1;
   localparam [2:0] SETTLE = 3'd2;
-  localparam [2:0] GIVE_UP = 3'd3;  // every number is answered as an open pair
+  localparam [2:0] ABANDON = 3'd3;  // every number is answered as an open pair
   localparam [2:0] CLOSED = 3'd4;
   reg [2:0] state_q;
   reg [ID_W+3:0] step_q;  // clocks in this state
@@ -115,12 +115,12 @@ module cchip_slot_ledger #(
         end
         SETTLE:
         if (step_q == SETTLE_CLOCKS) begin
-          state_q <= some_inside ? GIVE_UP : CLOSED;
+          state_q <= some_inside ? ABANDON : CLOSED;
           step_q  <= {ID_W + 4{1'b0}};
           if (some_inside) lost_q <= pairs_inside;
           giving_q <= some_inside;
         end
-        GIVE_UP:
+        ABANDON:
         if (last_step) begin
           state_q  <= SETTLE;
           step_q   <= {ID_W + 4{1'b0}};

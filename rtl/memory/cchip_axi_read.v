@@ -3,9 +3,9 @@
 `include "cchip_defs.vh"
 `include "cchip_assert.vh"
 // cchip_axi_read: AXI4 read master for lines of 64 bytes, shared by several clients. A client has
-// SLOTS places for lines and names the place in its request; the AXI ID is {client, slot}, so lines
+// SLOTS slots for lines and names the slot in its request; the AXI ID is {client, slot}, so lines
 // may arrive in any order and mixed.
-//   credit       a place is the credit: a client asks again for a place only after the last beat of
+//   credit       a slot is the credit: a client requests a slot again only after the last beat of
 //                its answer, and takes every beat. There is no ready, and no client can stall the
 //                read channel or another client
 //   answer       the beats of the line in order, the last one marked and with a code. Data count
@@ -14,7 +14,7 @@
 //   silence      a read that lasts longer than `limit` clocks from the offer of its address on is
 //                answered with CCHIP_READ_TIMEOUT 2 limit + 3 CLIENTS SLOTS + 10 clocks after the
 //                offer at the latest. Until then it waits behind the addresses requested before
-//                it, at most CLIENTS SLOTS - 1, each of which is taken or given up in that time.
+//                it, at most CLIENTS SLOTS - 1, each accepted or abandoned in that time.
 //                The last beat of a timeout has no data. While beats are outstanding under that ID,
 //                or the address is not taken, a request that would have to wait for it is answered
 //                with CCHIP_READ_OWED. Beats that come after the answer, or unasked, are dropped. A
@@ -46,13 +46,13 @@ module cchip_axi_read #(
     input  wire [                              31:0] limit,
     // ---- requests, one of each client per clock
     input  wire [                       CLIENTS-1:0] s_valid,  // bit c: client c asks for a line
-    input  wire [         CLIENTS*$clog2(SLOTS)-1:0] s_slot,           // its place for the line
+    input  wire [         CLIENTS*$clog2(SLOTS)-1:0] s_slot,           // its slot for the line
     // address of the line, in units of 64 bytes
     input  wire [                    CLIENTS*58-1:0] s_line,
     // ---- answers
     // bit c: a beat for client c; at most one bit is 1
     output wire [                       CLIENTS-1:0] m_valid,
-    output wire [                 $clog2(SLOTS)-1:0] m_slot,           // its place
+    output wire [                 $clog2(SLOTS)-1:0] m_slot,           // its slot
     // number of the beat in its line: 0, 1, ...; nothing in an answer without data
     output wire [                               2:0] m_beat,
     output wire                                      m_last,           // last beat of the answer
@@ -67,7 +67,7 @@ module cchip_axi_read #(
     // ---- AXI4 read address
     output wire                                      m_axi_arvalid,    // AXI4 read address
     input  wire                                      m_axi_arready,    // address taken
-    output wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] m_axi_arid,        // {client, place}
+    output wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] m_axi_arid,        // {client, slot}
     output wire [                              63:0] m_axi_araddr,  // address, byte, multiple of 64
     output wire [                               7:0] m_axi_arlen,  // constant: beats of a line - 1
     // constant: all bytes of the bus
@@ -98,22 +98,22 @@ module cchip_axi_read #(
   `CCHIP_REFUSE(DATA_W < 64 || DATA_W > 512 || (1 << $clog2(DATA_W)) != DATA_W,
                 cchip_error_axi_read_DATA_W_must_be_64_128_256_or_512)
 
-  // ---- what is in flight. Life of an ID: free, offered (live), taken (live and owed), free behind
-  // its last beat. A read that is given up is not live any more; its ID is free after the last beat
+  // ---- what is in flight. Life of an ID: free, offered (live), taken (live, pending), free behind
+  // its last beat. An abandoned read is not live any more; its ID is free after the last beat
   reg [IDS-1:0] live_q;  // the address is or was offered, the client waits for the answer
-  reg [IDS-1:0] owed_q;  // the address was taken, its rlast has not come
+  reg [IDS-1:0] pending_q;  // the address was taken, its rlast has not come
   reg [IDS-1:0] first_q;  // no beat of it has come
   wire [IDS-1:0] offered, taken, closed, ended, counted;  // what happens to them on this clock
 
-  // ---- requests and addresses. `owed` tells which of them has to be refused
+  // ---- requests and addresses. `pending` tells which of them has to be refused
   wire issue, refuse;  // the first request is put on offer, is refused
   wire [ID_W-1:0] head_id;  // of that request
   wire offer, taken_valid;
   wire [ID_W-1:0] taken_id;
-  wire place_timeout;
-  reg [ID_W-1:0] place_id_q, place_id_q2;
+  wire report_timeout;
+  reg [ID_W-1:0] beat_id_q, beat_id_q2;
   reg failing_q;  // an answer without data is on its way to the read channel's stage
-  wire found;  // there is a late read, found_id
+  wire found;  // an expired read, found_id
   cchip_axi_read_address #(
       .CLIENTS    (CLIENTS),
       .SLOTS      (SLOTS),
@@ -126,9 +126,9 @@ module cchip_axi_read #(
       .s_valid      (s_valid),
       .s_slot       (s_slot),
       .s_line       (s_line),
-      .owed         (owed_q),
-      .give_up      (place_timeout),
-      .give_up_id   (place_id_q2),
+      .pending      (pending_q),
+      .abandon      (report_timeout),
+      .abandon_id   (beat_id_q2),
       .refuse_ready (~failing_q & ~found),
       .refuse       (refuse),
       .issue        (issue),
@@ -147,7 +147,7 @@ module cchip_axi_read #(
       .m_axi_arprot (m_axi_arprot)
   );
 
-  // ---- time: one late read after the other takes the read channel's stage for a clock
+  // ---- time: one expired read after the other takes the read channel's stage for a clock
   wire [ID_W-1:0] found_id;
   cchip_axi_read_late #(.IDS(IDS), .ID_W(ID_W)) u_late (
       .clk     (clk),
@@ -160,21 +160,21 @@ module cchip_axi_read #(
       .busy    (failing_q)
   );
   reg [ID_W-1:0] fail_id_q;
-  reg fail_owed_q;  // 1: refused, 0: out of time
+  reg fail_refused_q;  // 1: refused, 0: out of time
   wire fail = (found | refuse) & ~failing_q;
   always @(posedge clk) begin
     fail_id_q   <= found ? found_id : head_id;
-    fail_owed_q <= ~found;
+    fail_refused_q <= ~found;
     failing_q   <= ~rst & fail;
   end
 
   // ---- the read channel's stage: a beat, or an answer without data, for which rready was 0
-  reg rready_q, beat_q, fail_q, owed_fail_q, bad_q, rlast_q;
+  reg rready_q, beat_q, fail_q, refused_fail_q, bad_q, rlast_q;
   reg [DATA_W-1:0] data_q;
   wire known = {1'b0, m_axi_rid} < NUMBER[ID_W:0];  // there is a read of this ID
   always @(posedge clk) begin
-    place_id_q <= failing_q ? fail_id_q : m_axi_rid;
-    owed_fail_q <= fail_owed_q;
+    beat_id_q <= failing_q ? fail_id_q : m_axi_rid;
+    refused_fail_q <= fail_refused_q;
     data_q <= m_axi_rdata;
     bad_q <= m_axi_rresp != 2'b00;
     rlast_q <= m_axi_rlast;
@@ -197,13 +197,13 @@ module cchip_axi_read #(
   // ---- what is known of its read, a clock later. What the clock before changes in it is added
   reg beat_q2, timeout_q2, refused_q2, bad_q2, rlast_q2;
   reg [DATA_W-1:0] data_q2;
-  reg live_q2, owed_q2, first_q2;
+  reg live_q2, pending_q2, first_q2;
   reg [3:0] progress_q2;
   reg closed_q2, ended_q2, counted_q2;  // by the answer or beat before, which is of the same read
   reg [3:0] progress_q3;  // after the beat before
-  wire same = place_id_q == place_id_q2;
+  wire same = beat_id_q == beat_id_q2;
   wire wanted = live_q2 & ~closed_q2;
-  wire counts = beat_q2 & owed_q2 & ~ended_q2;  // this beat is outstanding
+  wire counts = beat_q2 & pending_q2 & ~ended_q2;  // this beat is outstanding
   wire none_yet = first_q2 & ~counted_q2;
   wire [3:0] progress_now = counted_q2 ? progress_q3 : progress_q2;
   wire [2:0] count = none_yet ? 3'd0 : progress_now[2:0];
@@ -211,19 +211,19 @@ module cchip_axi_read #(
   wire [3:0] progress_d = {bad, count + 3'd1};
   wire last = rlast_q2 || count == LAST_BEAT[2:0];
   wire wrong_last = rlast_q2 != (count == LAST_BEAT[2:0]);
-  assign place_timeout = timeout_q2 & wanted;
-  wire close = place_timeout | (counts & last);
-  wire deliver = (counts & wanted) | place_timeout | refused_q2;
+  assign report_timeout = timeout_q2 & wanted;
+  wire close = report_timeout | (counts & last);
+  wire deliver = (counts & wanted) | report_timeout | refused_q2;
   always @(posedge clk) begin
-    if (counts) progress[place_id_q2] <= progress_d;
-    place_id_q2 <= place_id_q;
+    if (counts) progress[beat_id_q2] <= progress_d;
+    beat_id_q2 <= beat_id_q;
     data_q2     <= data_q;
     bad_q2      <= bad_q;
     rlast_q2    <= rlast_q;
-    live_q2     <= live_q[place_id_q];
-    owed_q2     <= owed_q[place_id_q];
-    first_q2    <= first_q[place_id_q];
-    progress_q2 <= progress[place_id_q];
+    live_q2     <= live_q[beat_id_q];
+    pending_q2  <= pending_q[beat_id_q];
+    first_q2    <= first_q[beat_id_q];
+    progress_q2 <= progress[beat_id_q];
     closed_q2   <= same & close;
     ended_q2    <= same & counts & rlast_q2;
     counted_q2  <= same & counts;
@@ -234,8 +234,8 @@ module cchip_axi_read #(
       refused_q2 <= 1'b0;
     end else begin
       beat_q2    <= beat_q;
-      timeout_q2 <= fail_q & ~owed_fail_q;
-      refused_q2 <= fail_q & owed_fail_q;
+      timeout_q2 <= fail_q & ~refused_fail_q;
+      refused_q2 <= fail_q & refused_fail_q;
     end
   end
 
@@ -245,7 +245,7 @@ module cchip_axi_read #(
   generate
     for (i = 0; i < IDS; i = i + 1) begin : gen_id
       localparam [31:0] I = i;
-      wire here = place_id_q2 == I[ID_W-1:0];
+      wire here = beat_id_q2 == I[ID_W-1:0];
       assign offered[i] = offer && m_axi_arid == I[ID_W-1:0];
       assign taken[i]   = taken_valid && taken_id == I[ID_W-1:0];
       assign counted[i] = here & counts;
@@ -253,17 +253,17 @@ module cchip_axi_read #(
       assign closed[i]  = here & close;
       always @(posedge clk)
         outstanding_q[i] <= ~rst &
-            (owed_q[i] | taken[i] | (m_axi_arvalid && m_axi_arid == I[ID_W-1:0]));
+            (pending_q[i] | taken[i] | (m_axi_arvalid && m_axi_arid == I[ID_W-1:0]));
     end
   endgenerate
   always @(posedge clk) begin
     first_q <= (first_q & ~counted) | taken;
     if (rst) begin
       live_q <= {IDS{1'b0}};
-      owed_q <= {IDS{1'b0}};
+      pending_q <= {IDS{1'b0}};
     end else begin
       live_q <= (live_q & ~closed) | offered;
-      owed_q <= (owed_q & ~ended) | taken;
+      pending_q <= (pending_q & ~ended) | taken;
     end
   end
 
@@ -274,9 +274,9 @@ module cchip_axi_read #(
   reg last_q, any_outstanding_q;
   reg [`CCHIP_READ_CODE_W-1:0] code_q;
   reg [DATA_W-1:0] data_q3;
-  wire [31:0] one_client = 32'd1 << ({{32 - ID_W{1'b0}}, place_id_q2} >> SLOT_W);
+  wire [31:0] one_client = 32'd1 << ({{32 - ID_W{1'b0}}, beat_id_q2} >> SLOT_W);
   always @(posedge clk) begin
-    slot_q  <= place_id_q2[SLOT_W-1:0];
+    slot_q  <= beat_id_q2[SLOT_W-1:0];
     count_q <= count;
     last_q  <= ~beat_q2 | last;
     code_q  <= refused_q2 ? `CCHIP_READ_OWED : timeout_q2 ? `CCHIP_READ_TIMEOUT :
@@ -287,7 +287,7 @@ module cchip_axi_read #(
       any_outstanding_q <= 1'b0;
     end else begin
       valid_q <= deliver ? one_client[CLIENTS-1:0] : {CLIENTS{1'b0}};
-      any_outstanding_q <= m_axi_arvalid | taken_valid | (|owed_q);
+      any_outstanding_q <= m_axi_arvalid | taken_valid | (|pending_q);
     end
   end
   assign m_valid = valid_q;

@@ -7,7 +7,7 @@
 //   refused      a request is refused if memory owed beats under its ID as it became the head of
 //                the requests, or if an address that was on offer then or since has been given up:
 //                that address may carry the same ID
-//   give_up      give_up = 1: the client of the read give_up_id has been answered. If its address
+//   abandon      abandon = 1: the client of the read abandon_id has been answered. If its address
 //                is on offer it stays there, as AXI demands, and nothing else is issued until it
 //                has been taken
 //   latency      5 clocks from s_valid to m_axi_arvalid
@@ -37,10 +37,10 @@ module cchip_axi_read_address #(
     input  wire [                       CLIENTS-1:0] s_valid,  // bit c: client c asks for a line
     input  wire [         CLIENTS*$clog2(SLOTS)-1:0] s_slot,         // its slot for the line
     input  wire [                    CLIENTS*58-1:0] s_line,  // number of the line, address / 64
-    input  wire [                 CLIENTS*SLOTS-1:0] owed,  // bit of each ID: beats are outstanding
-    // the client of the read give_up_id has been answered with TIMEOUT
-    input  wire                                      give_up,
-    input  wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] give_up_id,      // ID of that read
+    input  wire [                 CLIENTS*SLOTS-1:0] pending,  // bit of each ID: beats outstanding
+    // the client of the read abandon_id has been answered with TIMEOUT
+    input  wire                                      abandon,
+    input  wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] abandon_id,      // ID of that read
     // a refusal is accepted on this clock
     input  wire                                      refuse_ready,
     output wire                                      refuse,  // the request head_id is refused
@@ -112,7 +112,7 @@ module cchip_axi_read_address #(
   );
 
   // ---- the head of the requests, and the address on offer
-  reg head_valid_q, head_owed_q;
+  reg head_valid_q, head_busy_q;
   reg [ID_W-1:0] head_id_q;
   reg [57:0] head_line_q;
   reg arvalid_q;
@@ -124,12 +124,12 @@ module cchip_axi_read_address #(
   reg refused_q;  // the head was refused on the last clock: whether it is comes from far
   reg [ID_W-1:0] taken_id_q;
   wire abandoned = arvalid_q & ~ar_live_q;
-  assign issue = head_valid_q & ~head_owed_q & (~arvalid_q | (m_axi_arready & ar_live_q));
-  assign refuse = head_valid_q & head_owed_q & refuse_ready & ~refused_q;
+  assign issue = head_valid_q & ~head_busy_q & (~arvalid_q | (m_axi_arready & ar_live_q));
+  assign refuse = head_valid_q & head_busy_q & refuse_ready & ~refused_q;
   assign load_head = issue | refused_q | ~head_valid_q;
   always @(posedge clk) begin
     if (load_head) {head_id_q, head_line_q} <= {next_id, next_line};
-    head_owed_q <= load_head ? owed[next_id] | abandoned | abandoned_q : head_owed_q | abandoned;
+    head_busy_q <= load_head ? pending[next_id] | abandoned | abandoned_q : head_busy_q | abandoned;
     abandoned_q <= abandoned;
     taken_id_q  <= arid_q;
     if (issue) begin
@@ -147,7 +147,7 @@ module cchip_axi_read_address #(
       if (load_head) head_valid_q <= next_valid;
       refused_q <= refuse;
       arvalid_q <= issue | (arvalid_q & ~m_axi_arready);
-      ar_live_q <= issue | (ar_live_q & ~(give_up && give_up_id == arid_q));
+      ar_live_q <= issue | (ar_live_q & ~(abandon && abandon_id == arid_q));
       offer_q   <= issue;
       taken_q   <= arvalid_q & m_axi_arready;
     end

@@ -177,7 +177,7 @@ module cchip_axi_write #(
       .s_beat_data    (beat_data),
       .awaited        (waiting_some),
       .room           (waiting_room),
-      .owed           (dropped_some),
+      .pending        (dropped_some),
       .issue          (issue),
       .refused        (refused),
       .refused_client (refused_client),
@@ -240,7 +240,7 @@ module cchip_axi_write #(
   end
   assign m_axi_bready = bready_q;
 
-  // ---- time: the first write that is waited for is given up when it is late
+  // ---- time: the first write that is waited for is given up when it has expired
   wire gone = answered | timeout;
   cchip_axi_write_late #(.COUNT_W(COUNT_W)) u_late (
       .clk     (clk),

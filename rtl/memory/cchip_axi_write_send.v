@@ -3,12 +3,12 @@
 `include "cchip_assert.vh"
 // cchip_axi_write_send: sends the writes of cchip_axi_write_collect, address and data, or refuses
 // them while the response to a write that was given up is outstanding.
-//   send         a write is sent if no response is owed, there is room and the address can leave;
+//   send         a write is sent if no response is pending, with room, and the address can leave;
 //                its beats follow, one in 2 clocks
 //   answered     once no client waits any more (awaited = 0), the beats that are left are taken
 //                from their queue at once, and what memory still has to be offered goes out
 //                without strobes
-//   refuse       while a response is owed and no client waits, the write is taken from its queues
+//   refuse       while a response is pending and no client waits, the write leaves its queues
 //                and refused, after its last beat
 //   latency      1 clock from s_write_valid to m_axi_awvalid, 3 to m_axi_wvalid
 //   throughput   a beat in 2 clocks, an address on every clock
@@ -40,7 +40,7 @@ module cchip_axi_write_send #(
     input  wire                              awaited,  // a client waits for a write in flight
     input  wire                              room,            // another write may be in flight
     // the response to a write that was given up is outstanding
-    input  wire                              owed,
+    input  wire                              pending,
     output wire                              issue,           // this write is sent
     // a write was refused, all its beats are gone
     output wire                              refused,
@@ -79,9 +79,9 @@ module cchip_axi_write_send #(
     pop  <= ~rst & ~busy & take_q & s_beat_valid & (w_ready | ~awaited);
   end
   wire take_free = ~take_q | (pop & take_last_q);
-  wire refuse = s_write_valid & take_free & owed & ~awaited;
-  assign issue = s_write_valid & take_free & ~owed & room & aw_ready;
-  assign s_write_ready = take_free & (owed ? ~awaited : room & aw_ready);
+  wire refuse = s_write_valid & take_free & pending & ~awaited;
+  assign issue = s_write_valid & take_free & ~pending & room & aw_ready;
+  assign s_write_ready = take_free & (pending ? ~awaited : room & aw_ready);
   assign refused = pop & take_last_q & refused_q;
   always @(posedge clk) begin
     if (issue | refuse) begin

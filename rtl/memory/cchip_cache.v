@@ -8,7 +8,7 @@
 //                every answer must be
 //   answer       a line, or a code of cchip_axi_read without data, in any order. Lines in flight
 //                (MISSES of them) hold up only the requests for them; all of these get the
-//                line as it arrives, before its frame is given away
+//                line as it arrives, before its frame is reallocated
 //   beats        a line is two beats of 256 bits: the lower half with m_valid, the upper one on the
 //                next clock. m_place stays for both
 //   lock         lines in a lock range stay once they are loaded, at most one way of a set, until
@@ -184,7 +184,7 @@ module cchip_cache #(
   wire running;  // 0 while the entries are cleared after reset: this set
   wire [SET_W-1:0] walk_set;
   wire walk_next;
-  wire [1:0] want, want_way, want_locked, want_turn;  // of stage 6 of the ports: a frame for a line
+  wire [1:0] want, want_way, want_locked, want_victim;  // stage 6 of the ports: a frame for a line
   wire [2*LINE_W-1:0] line6;
   wire [1:0] kill6, walks6, walks_stale6, walk_hits6;
   wire [2*MISS_W-1:0] fill_slot6;
@@ -211,7 +211,7 @@ module cchip_cache #(
       .want          (want),
       .want_way      (want_way),
       .want_locked   (want_locked),
-      .want_turn     (want_turn),
+      .want_victim   (want_victim),
       .line          (line6),
       .free_slot     (free_slot),
       .grant         (grant),
@@ -312,9 +312,9 @@ module cchip_cache #(
           .lock_first      (lock_first),
           .lock_last       (lock_last),
           .free            (free[p]),
-          .own_soon        (p == 0 ? 1'b0 : walk_valid),
-          .own_valid       (p == 0 ? fill_valid : walk_valid_q),
-          .own_set         (p == 0 ? fill_frame[SET_W:1] : walk_set_q),
+          .maint_soon      (p == 0 ? 1'b0 : walk_valid),
+          .maint_valid     (p == 0 ? fill_valid : walk_valid_q),
+          .maint_set       (p == 0 ? fill_frame[SET_W:1] : walk_set_q),
           .fill_way        (fill_frame[0]),
           .fill_slot       (fill_slot),
           .fill_code       (fill_code),
@@ -349,7 +349,7 @@ module cchip_cache #(
           .want            (want[p]),
           .want_way        (want_way[p]),
           .want_locked     (want_locked[p]),
-          .want_turn       (want_turn[p]),
+          .want_victim     (want_victim[p]),
           .line6           (line6[LINE_W*p+:LINE_W]),
           .grant           (grant[p]),
           .kill6           (kill6[p]),

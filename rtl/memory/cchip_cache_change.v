@@ -34,7 +34,7 @@ module cchip_cache_change #(
     // there are lines of the range in it
     input  wire                                       walk_hits,
     input  wire [                                1:0] walk_ways,       // ways that have one
-    input  wire [             2*($clog2(MISSES)+1)-1:0] walk_keep,     // {turn, slot} of each way
+    input  wire [             2*($clog2(MISSES)+1)-1:0] walk_keep,     // {victim, slot} of each way
     output wire                                       walk_next,       // the set is done
     // ---- both ports: a line wants a frame
     // bit p: port p wants a frame for its line
@@ -42,15 +42,15 @@ module cchip_cache_change #(
     input  wire [                                1:0] want_way,        // bit p: its way
     // bit p: the line is to be locked
     input  wire [                                1:0] want_locked,
-    input  wire [                                1:0] want_turn,       // bit p: turn of the entry
+    input  wire [                                1:0] want_victim,     // bit p: its victim bit
     input  wire [                       2*LINE_W-1:0] line,  // line in stage 6 of each port
     input  wire [                 $clog2(MISSES)-1:0] free_slot,       // slot that the line gets
     output wire [                                1:0] grant,  // bit p: port p gets the frame
     output wire                                       granted,         // one of them does; |grant
-    // ---- the write, {valid, locked, turn, slot, tag} of each way
+    // ---- the write, {valid, locked, victim, slot, tag} of each way
     output wire [                                1:0] entry_write,  // ways whose entry is written
     output wire [                          SET_W-1:0] entry_set,       // set of the write
-    // {valid, locked, turn, slot, tag} of each way
+    // {valid, locked, victim, slot, tag} of each way
     output wire [2*(3+$clog2(MISSES)+LINE_W-SET_W)-1:0] entry_data,
     // bit p: the change comes from port p
     output wire [                                1:0] change_by,
@@ -77,7 +77,7 @@ module cchip_cache_change #(
   wire [LINE_W-1:0] its_line = by ? line[LINE_W+:LINE_W] : line[0+:LINE_W];
   wire way = by ? want_way[1] : want_way[0];
   wire [ENTRY_W-TAG_W-1:0] entry = {
-    1'b1, by ? want_locked[1] : want_locked[0], by ? want_turn[1] : want_turn[0], free_slot
+    1'b1, by ? want_locked[1] : want_locked[0], by ? want_victim[1] : want_victim[0], free_slot
   };
 
   reg [1:0] entry_write_q, change_by_q;

@@ -7,17 +7,17 @@
 // decides, 7 is the answer.
 //   beats        what is in stage 5 stays there for two clocks, with a half of a line each, the
 //                lower one first; so stage 0 takes nothing on the clock after it took something
-//   stage 0      in this order: a line that arrives or a set to invalidate (own), a request whose
+//   stage 0      in this order: a line that arrives or a set to invalidate (maint), a request whose
 //                line has come, a deferred or new request, a request to be looked up again; the
 //                last two alternate if both wait
 //   stage 6      a lookup is a hit, falls asleep on a line in flight, wants a frame, is refused, or
 //                is looked up again: if its set has changed since stage 1, if no frame may be
-//                given away, or if its wish is not granted
+//                reallocated, or if its wish is not granted
 //   answers      7 clocks after s_valid of an idle port, in any order; m_data comes from the memory
 //                that data_addr addresses in stage 5, m_place stays for two clocks
 //   throughput   a lookup every two clocks
 //   cuts         all but grant to what stage 6 does with it
-//   own          of port 0 a fill, of port 1 a set to invalidate: each port leaves the outputs of
+//   maint        of port 0 a fill, of port 1 a set to invalidate: each port leaves the outputs of
 //                the other kind at values that mean nothing
 //   reset        nothing inside
 //   timing       7 clocks from s_valid of a port that is free to m_valid for a line that is there;
@@ -54,15 +54,15 @@ module cchip_cache_port #(
     output wire [                              3:0] count,
     input  wire [                 LOCKS*LINE_W-1:0] lock_first,  // first line of each range to lock
     input  wire [                 LOCKS*LINE_W-1:0] lock_last,         // last line of each range
-    // ---- what the port has to do on its own: a fill, while free, or a set to invalidate, told
+    // ---- maintenance: a fill, while free, or a set to invalidate, told
     //      ahead
     // the port took nothing on the clock before: a fill may come
     output wire                                     free,
-    // own_valid is 1 on the next clock, for a set to invalidate
-    input  wire                                     own_soon,
-    // the port fills a frame, while free, or looks up a set to invalidate, told by own_soon
-    input  wire                                     own_valid,
-    input  wire [                        SET_W-1:0] own_set,           // its set
+    // maint_valid is 1 on the next clock, for a set to invalidate
+    input  wire                                     maint_soon,
+    // the port fills a frame, while free, or looks up a set to invalidate, told by maint_soon
+    input  wire                                     maint_valid,
+    input  wire [                        SET_W-1:0] maint_set,         // its set
     input  wire                                     fill_way,  // way of the frame that is filled
     input  wire [               $clog2(MISSES)-1:0] fill_slot,         // slot of the line
     input  wire [           `CCHIP_READ_CODE_W-1:0] fill_code,         // outcome of its read
@@ -86,10 +86,10 @@ module cchip_cache_port #(
     output wire                                     serving,
     // a request whose line has come waits for stage 0
     output wire                                     serve_valid,
-    // ---- the one write to the entries, {valid, locked, turn, slot, tag} of each way
+    // ---- the one write to the entries, {valid, locked, victim, slot, tag} of each way
     input  wire [                              1:0] entry_write,  // ways whose entry is written
     input  wire [                        SET_W-1:0] entry_set,         // set of the write
-    // {valid, locked, turn, slot, tag} of each way
+    // {valid, locked, victim, slot, tag} of each way
     input  wire [2*(3+$clog2(MISSES)+LINE_W-SET_W)-1:0] entry_data,
     // bit p: the write is a change that stage 6 of port p has made
     input  wire [                              1:0] change_by,
@@ -111,7 +111,7 @@ module cchip_cache_port #(
     output wire                                     want,  // stage 6 wants a frame for line6
     output wire                                     want_way,          // in this way
     output wire                                     want_locked,       // to be locked
-    output wire                                     want_turn,         // turn of the entry
+    output wire                                     want_victim,       // victim bit of the entry
     output wire [                       LINE_W-1:0] line6,             // line in stage 6
     input  wire                                     grant,             // it gets the frame
     // ---- a fill without data, whose line is to be invalidated
@@ -125,7 +125,7 @@ module cchip_cache_port #(
     // there are lines of the range in it
     output wire                                     walk_hits6,
     output wire [                              1:0] walk_ways6,        // ways that have one
-    output wire [           2*($clog2(MISSES)+1)-1:0] walk_keep6       // {turn, slot} of each way
+    output wire [           2*($clog2(MISSES)+1)-1:0] walk_keep6       // {victim, slot} of each way
 );
 
   localparam integer PLACE_W = $clog2(PLACES);
@@ -135,9 +135,9 @@ module cchip_cache_port #(
   localparam integer ENTRY_W = 3 + SLOT_W + TAG_W;
 
   // ---- what goes through the stages: bit i is that of stage i
-  reg [6:1] look_q, serve_q, own_q;
+  reg [6:1] look_q, serve_q, maint_q;
   reg [7:1] some_q;  // one of these
-  wire turn = ~some_q[1] & ~own_soon;
+  wire port_free = ~some_q[1] & ~maint_soon;
   assign free  = ~some_q[1];
   assign beat5 = some_q[6];
 
@@ -150,9 +150,9 @@ module cchip_cache_port #(
   wire [LINE_W-1:0] look_line0;
   reg running_q;  // a clock later: it comes from far
   always @(posedge clk) running_q <= ~rst & running;
-  // of stage 7: what becomes of a request that is not answered is known after many gates, and is
+  // of stage 7: whether a request that is not answered is retried is known after many gates, and is
   // needed far from them
-  reg again_q7;
+  reg replay_q7;
   reg [PLACE_W-1:0] place_q7;
   reg [LINE_W-1:0] line_q7;
   cchip_cache_requests #(.PLACES(PLACES), .LINE_W(LINE_W)) u_requests (
@@ -161,10 +161,10 @@ module cchip_cache_port #(
       .s_valid    (s_valid),
       .s_place    (s_place),
       .s_line     (s_line),
-      .again      (again_q7),
-      .again_place(place_q7),
-      .again_line (line_q7),
-      .free       (turn & running_q & ~own_valid & ~serve_valid),
+      .replay     (replay_q7),
+      .replay_place(place_q7),
+      .replay_line(line_q7),
+      .free       (port_free & running_q & ~maint_valid & ~serve_valid),
       .look       (look0),
       .look_place (look_place0),
       .look_line  (look_line0)
@@ -175,12 +175,12 @@ module cchip_cache_port #(
       some_q  <= 7'd0;
       look_q  <= 6'd0;
       serve_q <= 6'd0;
-      own_q   <= 6'd0;
+      maint_q <= 6'd0;
     end else begin
-      some_q  <= {some_q[6:1], look0 | own_valid | (turn & serve_valid)};
+      some_q  <= {some_q[6:1], look0 | maint_valid | (port_free & serve_valid)};
       look_q  <= {look_q[5:1], look0};
-      serve_q <= {serve_q[5:1], turn & serve_valid & ~own_valid};
-      own_q   <= {own_q[5:1], own_valid};
+      serve_q <= {serve_q[5:1], port_free & serve_valid & ~maint_valid};
+      maint_q <= {maint_q[5:1], maint_valid};
     end
 
   wire [PLACE_W-1:0] place5;
@@ -194,14 +194,14 @@ module cchip_cache_port #(
   cchip_delay #(.WIDTH(PLACE_W + CODE_W + SLOT_W), .DEPTH(5)) u_to_5 (
       .clk(clk),
       .rst(rst),
-      .d  ({serve_valid | own_valid ? serve_place : look_place0,
-            own_valid ? fill_code : serve_code, fill_slot}),
+      .d  ({serve_valid | maint_valid ? serve_place : look_place0,
+            maint_valid ? fill_code : serve_code, fill_slot}),
       .q  ({place5, code5, slot5})
   );
   cchip_delay #(.DEPTH(4)) u_way_to_4 (
       .clk(clk),
       .rst(rst),
-      .d  (own_valid ? fill_way : serve_frame[0]),
+      .d  (maint_valid ? fill_way : serve_frame[0]),
       .q  (way4)
   );
   reg [LINE_W-1:0] line_q1, line_q2, line_q3, line_q4, line_q5, line_q6;
@@ -211,7 +211,7 @@ module cchip_cache_port #(
   always @(posedge clk) begin
     line_q1 <= {
       look_line0[LINE_W-1:SET_W],
-      own_valid ? own_set : serve_valid ? serve_frame[SET_W:1] : look_line0[SET_W-1:0]
+      maint_valid ? maint_set : serve_valid ? serve_frame[SET_W:1] : look_line0[SET_W-1:0]
     };
     line_q2  <= line_q1;
     line_q3  <= line_q2;
@@ -233,7 +233,7 @@ module cchip_cache_port #(
   assign data_addr = {line_q5[SET_W-1:0], way_q5};
 
   // ---- the entries of the two ways
-  wire [1:0] match5, valid5, locked5, turn5, turn6, hold5, full5, forget5, forget6;
+  wire [1:0] match5, valid5, locked5, victim5, victim6, hold5, full5, in_range5, in_range6;
   wire [2*SLOT_W-1:0] slots5, slots6;
   genvar w;
   generate
@@ -262,35 +262,35 @@ module cchip_cache_port #(
           .match5        (match5[w]),
           .valid5        (valid5[w]),
           .locked5       (locked5[w]),
-          .turn5         (turn5[w]),
+          .victim5       (victim5[w]),
           .hold5         (hold5[w]),
           .full5         (full5[w]),
           .slot5         (slots5[SLOT_W*w+:SLOT_W]),
-          .forget5       (forget5[w]),
-          .forget6       (forget6[w]),
-          .turn6         (turn6[w]),
+          .in_range5     (in_range5[w]),
+          .in_range6     (in_range6[w]),
+          .victim6       (victim6[w]),
           .slot6         (slots6[SLOT_W*w+:SLOT_W])
       );
     end
   endgenerate
 
   // lines to lock
-  wire [LOCKS-1:0] in_range;
+  wire [LOCKS-1:0] lock_hit;
   genvar i;
   generate
     for (i = 0; i < LOCKS; i = i + 1) begin : gen_lock
-      assign in_range[i] = line_q1 >= lock_first[LINE_W*i+:LINE_W] &&
+      assign lock_hit[i] = line_q1 >= lock_first[LINE_W*i+:LINE_W] &&
           line_q1 <= lock_last[LINE_W*i+:LINE_W];
     end
   endgenerate
   wire lock5;
-  cchip_delay #(.DEPTH(4)) u_lock (.clk(clk), .rst(rst), .d(|in_range), .q(lock5));
+  cchip_delay #(.DEPTH(4)) u_lock (.clk(clk), .rst(rst), .d(|lock_hit), .q(lock5));
 
   // ---- stage 5 to 6: what the decision needs
   wire [1:0] wait5 = match5 & hold5 & ~full5;  // the line is in flight
-  wire [1:0] may5 = ~hold5 & ~locked5;  // frames that may be given away
+  wire [1:0] evictable5 = ~hold5 & ~locked5;  // frames that may be evicted
   reg match_q6, both_q6, wait_q6, lacks_q6, prefer_q6, lock_q6;
-  reg [1:0] may_q6, locked_q6, same_q6;
+  reg [1:0] evictable_q6, locked_q6, same_q6;
   reg [SLOT_W-1:0] wait_slot_q6;
   // Taken a clock before, for both come from far: the oldest does not change while it is alone.
   reg alone_q6, is_oldest_q6;
@@ -303,17 +303,17 @@ module cchip_cache_port #(
     match_q6 <= |match5;
     both_q6  <= &match5;
     // not reset: no slot is free on the clocks after reset
-    lacks_q6     <= look_q[5] & ~(|match5) & (|may5);
+    lacks_q6     <= look_q[5] & ~(|match5) & (|evictable5);
     wait_q6      <= |wait5;
     wait_slot_q6 <= match5[1] ? slots5[SLOT_W+:SLOT_W] : slots5[0+:SLOT_W];
-    may_q6       <= may5;
-    prefer_q6    <= &valid5 ? ^turn5 : valid5[0];
+    evictable_q6 <= evictable5;
+    prefer_q6    <= &valid5 ? ^victim5 : valid5[0];
     locked_q6    <= locked5;
     lock_q6      <= lock5;
     alone_q6     <= alone;
     is_oldest_q6 <= oldest_here && oldest_place == place5;
-    kill_q6      <= ~rst & own_q[5] & (code5 != `CCHIP_READ_OK);
-    walk_hits_q6 <= ~rst & own_q[5] & (|forget5);
+    kill_q6      <= ~rst & maint_q[5] & (code5 != `CCHIP_READ_OK);
+    walk_hits_q6 <= ~rst & maint_q[5] & (|in_range5);
   end
 
   // ---- stage 6
@@ -322,22 +322,22 @@ module cchip_cache_port #(
   wire hit = fresh & match_q6 & ~wait_q6;
   wire sleep = (fresh & wait_q6) | grant;
   wire refuse = fresh & ~match_q6 & exhausted;
-  wire again = look_q[6] & (stale | (~match_q6 & ~grant & ~exhausted));
+  wire replay = look_q[6] & (stale | (~match_q6 & ~grant & ~exhausted));
   // the way to replace is found beside the decision whether any is
-  wire victim = &may_q6 ? prefer_q6 : may_q6[1];
+  wire victim_way = &evictable_q6 ? prefer_q6 : evictable_q6[1];
   assign want = lacks_q6 & ~stale & free_valid & (~alone_q6 | is_oldest_q6);
-  assign want_way = victim;
-  assign want_locked = lock_q6 & ~(victim ? locked_q6[0] : locked_q6[1]);
-  assign want_turn = ~victim ^ (victim ? turn6[0] : turn6[1]);
-  assign fill_write = (own_q[5] && code5 == `CCHIP_READ_OK) || (own_q[6] && !kill_q6);
+  assign want_way = victim_way;
+  assign want_locked = lock_q6 & ~(victim_way ? locked_q6[0] : locked_q6[1]);
+  assign want_victim = ~victim_way ^ (victim_way ? victim6[0] : victim6[1]);
+  assign fill_write = (maint_q[5] && code5 == `CCHIP_READ_OK) || (maint_q[6] && !kill_q6);
   assign kill6 = kill_q6;
   assign fill_slot6 = slot_q6;
   assign fill_way6 = {way_q6, ~way_q6};
-  assign walk6 = own_q[6];
+  assign walk6 = maint_q[6];
   assign walk_stale6 = stale;
   assign walk_hits6 = walk_hits_q6;
-  assign walk_ways6 = forget6;
-  assign walk_keep6 = {turn6[1], slots6[SLOT_W+:SLOT_W], turn6[0], slots6[0+:SLOT_W]};
+  assign walk_ways6 = in_range6;
+  assign walk_keep6 = {victim6[1], slots6[SLOT_W+:SLOT_W], victim6[0], slots6[0+:SLOT_W]};
 
   // ---- requests that wait for a line: told of in stage 7
   reg sleep_q7;
@@ -345,7 +345,7 @@ module cchip_cache_port #(
   always @(posedge clk) begin
     if (!some_q[7]) place_q7 <= place_q6;
     line_q7       <= line_q6;
-    again_q7      <= ~rst & again;
+    replay_q7     <= ~rst & replay;
     sleep_q7      <= ~rst & sleep;
     sleep_slot_q7 <= wait_q6 ? wait_slot_q6 : free_slot;
   end
@@ -357,7 +357,7 @@ module cchip_cache_port #(
       .look_place   (place_q6),
       .sleep        (sleep_q7),
       .sleep_slot   (sleep_slot_q7),
-      .retry        (again_q7),
+      .retry        (replay_q7),
       .retried      (retried),
       .collect      (collect),
       .collect_slot (collect_slot),
@@ -365,7 +365,7 @@ module cchip_cache_port #(
       .collect_frame(collect_frame),
       .serving      (serving),
       .serve_valid  (serve_valid),
-      .serve_ready  (turn & ~own_valid),
+      .serve_ready  (port_free & ~maint_valid),
       .serve_place  (serve_place),
       .serve_code   (serve_code),
       .serve_frame  (serve_frame),
@@ -379,7 +379,7 @@ module cchip_cache_port #(
   always @(posedge clk) begin
     code_q7  <= serve_q[6] ? code_q6 : hit ? `CCHIP_READ_OK : `CCHIP_READ_OWED;
     valid_q7 <= ~rst & (hit | refuse | serve_q[6]);
-    count_q  <= {4{~rst}} & {again, fresh & wait_q6, grant, hit};
+    count_q  <= {4{~rst}} & {replay, fresh & wait_q6, grant, hit};
   end
   assign m_valid = valid_q7;
   assign m_place = place_q7;
@@ -389,7 +389,7 @@ module cchip_cache_port #(
   wire unused = &{1'b0, waiting, both_q6, match4[0]};
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_free, free || !own_valid)
+      `CCHIP_ASSERT(a_free, free || !maint_valid)
       `CCHIP_ASSERT(a_held, !serve_valid || held[collect_slot])
       `CCHIP_ASSERT(a_alone, !grant || !alone || !alone_q6 ||
           (oldest_here && oldest_place == place_q6))

@@ -21,9 +21,9 @@ module cchip_cache_requests #(
     input  wire [$clog2(PLACES)-1:0] s_place,      // its place
     input  wire [        LINE_W-1:0] s_line,       // its line
     // ---- one to be looked up again
-    input  wire                      again,        // a request is to be looked up again
-    input  wire [$clog2(PLACES)-1:0] again_place,  // its place
-    input  wire [        LINE_W-1:0] again_line,   // its line
+    input  wire                      replay,       // a request is to be looked up again
+    input  wire [$clog2(PLACES)-1:0] replay_place,  // its place
+    input  wire [        LINE_W-1:0] replay_line,  // its line
     // ---- the lookup
     input  wire                      free,         // a request may have this clock
     output wire                      look,         // a request is looked up
@@ -33,40 +33,40 @@ module cchip_cache_requests #(
 
   localparam integer WIDTH = $clog2(PLACES) + LINE_W;
 
-  wire deferred_valid, again_valid, deferred_ready, again_ready;
-  wire [WIDTH-1:0] deferred_data, again_data;
+  wire deferred_valid, replay_valid, deferred_ready, replay_ready;
+  wire [WIDTH-1:0] deferred_data, replay_data;
   // The queue of those to be looked up again has its turn. Whether it is read does not depend on a
   // request that comes on this clock, which would cross the chip to its flip-flops.
-  reg again_first_q;
-  wire use_again = again_valid & (again_first_q | ~deferred_valid);
+  reg replay_first_q;
+  wire use_replay = replay_valid & (replay_first_q | ~deferred_valid);
   cchip_fifo #(.WIDTH(WIDTH), .DEPTH(PLACES), .ROOM_KNOWN(1)) u_deferred (
       .clk    (clk),
       .rst    (rst),
-      .s_valid(s_valid & (~free | deferred_valid | again_valid)),
+      .s_valid(s_valid & (~free | deferred_valid | replay_valid)),
       .s_ready(deferred_ready),
       .s_data ({s_place, s_line}),
       .m_valid(deferred_valid),
-      .m_ready(free & ~use_again),
+      .m_ready(free & ~use_replay),
       .m_data (deferred_data)
   );
-  cchip_fifo #(.WIDTH(WIDTH), .DEPTH(PLACES), .ROOM_KNOWN(1)) u_again (
+  cchip_fifo #(.WIDTH(WIDTH), .DEPTH(PLACES), .ROOM_KNOWN(1)) u_replay(
       .clk    (clk),
       .rst    (rst),
-      .s_valid(again),
-      .s_ready(again_ready),
-      .s_data ({again_place, again_line}),
-      .m_valid(again_valid),
-      .m_ready(free & use_again),
-      .m_data (again_data)
+      .s_valid(replay),
+      .s_ready(replay_ready),
+      .s_data ({replay_place, replay_line}),
+      .m_valid(replay_valid),
+      .m_ready(free & use_replay),
+      .m_data (replay_data)
   );
   always @(posedge clk)
-    if (rst) again_first_q <= 1'b0;
-    else if (free && again_valid) again_first_q <= ~use_again;
-  assign look = free & (again_valid | deferred_valid | s_valid);
-  assign {look_place, look_line} = use_again ? again_data :
+    if (rst) replay_first_q <= 1'b0;
+    else if (free && replay_valid) replay_first_q <= ~use_replay;
+  assign look = free & (replay_valid | deferred_valid | s_valid);
+  assign {look_place, look_line} = use_replay ? replay_data :
       deferred_valid ? deferred_data : {s_place, s_line};
 
-  wire unused = &{1'b0, deferred_ready, again_ready};
+  wire unused = &{1'b0, deferred_ready, replay_ready};
 
 endmodule
 `default_nettype wire

@@ -3,7 +3,7 @@
 `include "cchip_assert.vh"
 // cchip_cache_way: the entries of one way as one port of cchip_cache sees them, in the stages of
 // cchip_cache_port: read in 1 to 3, compared in 4, in 5 it is known whether the line is in flight.
-//   entry        {valid, locked, turn, slot, tag}: slot is that of the read that filled the frame
+//   entry        {valid, locked, victim, slot, tag}: slot is that of the read that filled the frame
 //                or will. If the record of that slot still names this frame, the frame is held, and
 //                the line is in flight until the slot is filled
 //   latency      3 clocks from line1 to match4, 4 to the values of stage 5
@@ -24,7 +24,7 @@ module cchip_cache_way #(
     // ---- the one write to the entries
     input  wire                                      write,           // an entry is written
     input  wire [                         SET_W-1:0] write_set,       // of this set
-    input  wire [3+$clog2(MISSES)+LINE_W-SET_W-1:0] write_data,  // {valid, locked, turn, slot, tag}
+    input  wire [3+$clog2(MISSES)+LINE_W-SET_W-1:0] write_data,  // {valid,locked,victim,slot,tag}
     input  wire                                      allocate,        // a line gets a frame
     input  wire [                $clog2(MISSES)-1:0] allocate_slot,   // slot of its read
     input  wire [                           SET_W:0] allocate_frame,  // {set, way}
@@ -43,13 +43,13 @@ module cchip_cache_way #(
     output wire                                      match5,          // the same, in stage 5
     output wire                                      valid5,          // the entry has a line
     output wire                                      locked5,         // which is locked
-    output wire                                      turn5,           // turn of the entry
+    output wire                                      victim5,         // victim bit of the entry
     output wire                                      hold5,           // a slot holds the frame
     output wire                                      full5,           // its data are in the frame
     output wire [                $clog2(MISSES)-1:0] slot5,           // slot of the entry
-    output wire                                      forget5,  // its line is one to invalidate
-    output wire                                      forget6,         // the same, in stage 6
-    output wire                                      turn6,           // turn, in stage 6
+    output wire                                      in_range5,  // its line is one to invalidate
+    output wire                                      in_range6,       // the same, in stage 6
+    output wire                                      victim6,         // victim bit, in stage 6
     output wire [                $clog2(MISSES)-1:0] slot6            // slot, in stage 6
 );
 
@@ -69,19 +69,19 @@ module cchip_cache_way #(
   );
 
   reg [ENTRY_W-1:0] entry_q4;
-  wire valid4, locked4, turn4;
+  wire valid4, locked4, victim4;
   wire [SLOT_W-1:0] slot4;
   wire [TAG_W-1:0] tag4;
-  assign {valid4, locked4, turn4, slot4, tag4} = entry_q4;
-  wire [LINE_W-1:0] kept4 = {tag4, line4[SET_W-1:0]};  // the line in this way
-  assign match4 = valid4 && kept4 == line4;
+  assign {valid4, locked4, victim4, slot4, tag4} = entry_q4;
+  wire [LINE_W-1:0] stored_line4 = {tag4, line4[SET_W-1:0]};  // the line in this way
+  assign match4 = valid4 && stored_line4 == line4;
 
   `CCHIP_LUT_RAM
   reg [SET_W:0] frames[0:MISSES-1];
-  reg match_q5, valid_q5, locked_q5, turn_q5, held_q5, filled_q5, forget_q5;
+  reg match_q5, valid_q5, locked_q5, victim_q5, held_q5, filled_q5, in_range_q5;
   reg [SLOT_W-1:0] slot_q5;
   reg [SET_W:0] frame_q5;
-  reg turn_q6, forget_q6;
+  reg victim_q6, in_range_q6;
   reg [SLOT_W-1:0] slot_q6;
   always @(posedge clk) begin
     entry_q4 <= entry3;
@@ -92,23 +92,23 @@ module cchip_cache_way #(
     match_q5  <= match4;
     valid_q5  <= valid4;
     locked_q5 <= locked4;
-    turn_q5   <= turn4;
+    victim_q5 <= victim4;
     slot_q5   <= slot4;
-    forget_q5 <= valid4 && kept4 >= first && kept4 <= last;
-    forget_q6 <= forget_q5;
-    turn_q6   <= turn_q5;
+    in_range_q5 <= valid4 && stored_line4 >= first && stored_line4 <= last;
+    in_range_q6 <= in_range_q5;
+    victim_q6 <= victim_q5;
     slot_q6   <= slot_q5;
   end
   assign match5  = match_q5;
   assign valid5  = valid_q5;
   assign locked5 = locked_q5;
-  assign turn5   = turn_q5;
+  assign victim5 = victim_q5;
   assign hold5   = held_q5 && frame_q5 == {set5, NUMBER[0]};
   assign full5   = filled_q5;
   assign slot5   = slot_q5;
-  assign forget5 = forget_q5;
-  assign forget6 = forget_q6;
-  assign turn6   = turn_q6;
+  assign in_range5 = in_range_q5;
+  assign in_range6 = in_range_q6;
+  assign victim6 = victim_q6;
   assign slot6   = slot_q6;
 
 endmodule

@@ -125,9 +125,9 @@ module cchip_bitstream_fetch #(
   reg rready_q;
   reg [4:0] first_q, second_q;  // beats to come of the oldest burst, of the one behind it
   wire beat = m_axi_rvalid & rready_q;
-  wire owed = bursts_q != 2'd0;
-  wire last = beat & m_axi_rlast & owed;
-  wire good = owed && m_axi_rresp == 2'b00 && first_q != 5'd0 && m_axi_rlast == (first_q == 5'd1);
+  wire busy = bursts_q != 2'd0;
+  wire last = beat & m_axi_rlast & busy;
+  wire good = busy && m_axi_rresp == 2'b00 && first_q != 5'd0 && m_axi_rlast == (first_q == 5'd1);
   // kept short: run is left out because its end empties the FIFO, rready_q because it is 1 whenever
   // run_q is 1
   wire push = m_axi_rvalid & run_q & ~error_q & ~timeout_q & good;
@@ -150,10 +150,10 @@ module cchip_bitstream_fetch #(
 
   assign m_axi_rready = rready_q;
   assign bus_error = error_q;
-  assign outstanding = arvalid_q | owed;
+  assign outstanding = arvalid_q | busy;
 
   // ---- clocks without an address taken or a beat
-  wire late;
+  wire limit_reached;
   wire [31:0] waited;
   cchip_timeout #(
       .DEFAULT(`CCHIP_MEMORY_LIMIT_DEFAULT)
@@ -162,11 +162,11 @@ module cchip_bitstream_fetch #(
       .restart(rst | taken | beat | ~outstanding),
       .limit  (limit),
       .elapsed(waited),
-      .expired(late)
+      .expired(limit_reached)
   );
   always @(posedge clk)
     if (rst) timeout_q <= 1'b0;
-    else timeout_q <= run & (timeout_q | (working & late));
+    else timeout_q <= run & (timeout_q | (working & limit_reached));
   assign timeout = timeout_q;
 
   wire fifo_ready;

@@ -72,9 +72,9 @@ module cchip_bitstream_table #(
   wire [4:0] read_entry = packed_entry(read_word[6:2]);
   wire [4:0] look_packed = packed_entry(look_entry);
   wire writes = write && here(write_word[6:2]);
-  wire [ENTRY_W:0] write_place = {write_entry[ENTRY_W-1:0], write_word[0]};
-  wire [ENTRY_W:0] read_place = {read_entry[ENTRY_W-1:0], read_word[0]};
-  wire [ENTRY_W:0] look_place = {look_packed[ENTRY_W-1:0], look_q};
+  wire [ENTRY_W:0] write_word_addr = {write_entry[ENTRY_W-1:0], write_word[0]};
+  wire [ENTRY_W:0] read_word_addr = {read_entry[ENTRY_W-1:0], read_word[0]};
+  wire [ENTRY_W:0] look_word_addr = {look_packed[ENTRY_W-1:0], look_q};
   wire [31:0] read_stored, look_stored;
   genvar i;
   generate
@@ -82,9 +82,9 @@ module cchip_bitstream_table #(
       `CCHIP_LUT_RAM
       reg [7:0] mem [0:(2<<ENTRY_W)-1];
       always @(posedge clk)
-        if (writes && !write_word[1] && write_bytes[i]) mem[write_place] <= write_data[8*i+:8];
-      assign read_stored[8*i+:8] = mem[read_place];
-      assign look_stored[8*i+:8] = mem[look_place];
+        if (writes && !write_word[1] && write_bytes[i]) mem[write_word_addr] <= write_data[8*i+:8];
+      assign read_stored[8*i+:8] = mem[read_word_addr];
+      assign look_stored[8*i+:8] = mem[look_word_addr];
     end
   endgenerate
   wire [32:0] valid_of = {{33 - ENTRIES{1'b0}}, valid_q};

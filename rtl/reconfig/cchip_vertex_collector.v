@@ -48,19 +48,19 @@ module cchip_vertex_collector #(
   assign `CCHIP_VERTEX_OF(first, last, id, err, mode, a, b) = s_vertex_data;
 
   reg [VERTICES*POINT_W-1:0] a_q, b_q;
-  reg [VERTICES-1:0] places_q;  // of the next vertex and those behind it
+  reg [VERTICES-1:0] write_mask_q;  // of the next vertex and those behind it
   reg begun_q;  // a first vertex came, and no last one since
   reg valid_q;
   reg [`CCHIP_PAIR_ID_W-1:0] id_q;
   reg [`CCHIP_ERR_W-1:0] err_q;
   reg [`CCHIP_MODE_W-1:0] mode_q;
-  wire [VERTICES-1:0] places = first ? {VERTICES{1'b1}} : places_q;
+  wire [VERTICES-1:0] write_mask = first ? {VERTICES{1'b1}} : write_mask_q;
 
   integer i;
   always @(posedge clk) begin
-    if (s_vertex_valid) places_q <= places << 1;
+    if (s_vertex_valid) write_mask_q <= write_mask << 1;
     for (i = 0; i < VERTICES; i = i + 1)
-      if (s_vertex_valid && places[i]) begin
+      if (s_vertex_valid && write_mask[i]) begin
         a_q[POINT_W*i+:POINT_W] <= a;
         b_q[POINT_W*i+:POINT_W] <= b;
       end

@@ -247,7 +247,7 @@ module cchip_traversal_events #(
   );
 
   // ---- first clock: which sources may enter?
-  reg may_verdict_q, may_result_q, may_drop_q, may_start_q, may_pop_q;
+  reg req_verdict_q, req_result_q, req_drop_q, req_start_q, req_pop_q;
   reg [QUERIES-1:0] verdict_lock_q, result_lock_q, drop_lock_q, start_lock_q, pop_lock_q;
   reg [CONTEXT_W-1:0] idle_context_q, pop_context_q;
   wire asks = ~choose_q & ~rst;
@@ -257,11 +257,11 @@ module cchip_traversal_events #(
   localparam [QUERIES-1:0] FIRST_CONTEXT = 1;
   always @(posedge clk) begin
     choose_q       <= asks;
-    may_verdict_q  <= asks & verdict_valid_q & ~lock_q[lookup_context];
-    may_result_q   <= asks & result_valid & ~lock_q[result_context];
-    may_drop_q     <= asks & s_drop_valid & ~lock_q[s_drop_context];
-    may_start_q    <= asks & can_start & can_go & |(idle_one_q & ~inside_q);
-    may_pop_q      <= asks & can_go & |(want_one_q & ~inside_q);
+    req_verdict_q  <= asks & verdict_valid_q & ~lock_q[lookup_context];
+    req_result_q   <= asks & result_valid & ~lock_q[result_context];
+    req_drop_q     <= asks & s_drop_valid & ~lock_q[s_drop_context];
+    req_start_q    <= asks & can_start & can_go & |(idle_one_q & ~inside_q);
+    req_pop_q      <= asks & can_go & |(want_one_q & ~inside_q);
     verdict_lock_q <= FIRST_CONTEXT << lookup_context;
     result_lock_q  <= FIRST_CONTEXT << result_context;
     drop_lock_q    <= FIRST_CONTEXT << s_drop_context;
@@ -273,15 +273,15 @@ module cchip_traversal_events #(
 
   // ---- second clock: one event is let in
   reg result_first_q;  // a verdict has gone before a result
-  wire drop_take = may_drop_q & ~may_verdict_q & ~may_result_q;
-  wire pop_take = may_pop_q & ~may_verdict_q & ~may_result_q & ~may_drop_q & ~may_start_q;
-  assign verdict_take = may_verdict_q & ~(result_first_q & may_result_q);
-  assign result_take  = may_result_q & (result_first_q | ~may_verdict_q);
-  assign start_take   = may_start_q & ~may_verdict_q & ~may_result_q & ~may_drop_q;
+  wire drop_take = req_drop_q & ~req_verdict_q & ~req_result_q;
+  wire pop_take = req_pop_q & ~req_verdict_q & ~req_result_q & ~req_drop_q & ~req_start_q;
+  assign verdict_take = req_verdict_q & ~(result_first_q & req_result_q);
+  assign result_take  = req_result_q & (result_first_q | ~req_verdict_q);
+  assign start_take   = req_start_q & ~req_verdict_q & ~req_result_q & ~req_drop_q;
   assign place_take   = start_take | pop_take;
   assign room_take    = place_take | (verdict_take & some_room_q);
   assign s_drop_ready = drop_take;
-  wire take = may_verdict_q | may_result_q | may_drop_q | may_start_q | may_pop_q;
+  wire take = req_verdict_q | req_result_q | req_drop_q | req_start_q | req_pop_q;
   wire [CONTEXT_W-1:0] taken = verdict_take ? lookup_context : result_take ? result_context :
       drop_take ? s_drop_context : start_take ? idle_context_q : pop_context_q;
   wire [QUERIES-1:0] locks = (verdict_lock_q & {QUERIES{verdict_take}}) |
@@ -324,7 +324,7 @@ module cchip_traversal_events #(
       idle_free_q <= (idle_q & ~inside_q) | (leaves & {QUERIES{~s_left_active}});
       want_free_q <= (want_q & ~inside_q) | (leaves & {QUERIES{s_left_wants}});
       valid_q <= take;
-      result_first_q <= result_first_q ? ~result_take : verdict_take & may_result_q;
+      result_first_q <= result_first_q ? ~result_take : verdict_take & req_result_q;
       lock_q  <= (lock_q & ~unlocks) | locks;
       inside_q <= (inside_q & ~leaves) | locks;
       idle_q  <= s_left_active ? idle_q & ~leaves : idle_q | leaves;
@@ -349,7 +349,7 @@ module cchip_traversal_events #(
   // before it though it might have entered
   reg [4:0] result_waits_q, verdict_waits_q;
   reg result_passed_q, verdict_passed_q;
-  wire both = may_result_q & may_verdict_q;
+  wire both = req_result_q & req_verdict_q;
   always @(posedge clk) begin
     result_passed_q  <= ~rst & ~result_take & (result_passed_q | (both & verdict_take));
     verdict_passed_q <= ~rst & ~verdict_take & (verdict_passed_q | (both & result_take));

@@ -63,7 +63,7 @@ bind cchip_chip cchip_chip_bins u_bins (
       u_core.u_broad_phase.u_traversal.started6,
       // the cache: a set is looked up for an invalidation, a line of a range to lock is, a lookup
       // comes again, falls asleep on a line in flight, gets a frame, is a hit
-      u_core.u_broad_phase.u_cache.gen_port[1].u_port.own_q[6],
+      u_core.u_broad_phase.u_cache.gen_port[1].u_port.maint_q[6],
       (u_core.u_broad_phase.u_cache.gen_port[0].u_port.lock_q6 &&
        u_core.u_broad_phase.u_cache.gen_port[0].u_port.look_q[6]) ||
       (u_core.u_broad_phase.u_cache.gen_port[1].u_port.lock_q6 &&
