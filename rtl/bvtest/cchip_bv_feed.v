@@ -26,7 +26,7 @@
 //                in block RAM cost no flip-flops, and since its port for writing is four words
 //                wide, no multiplexers.
 module cchip_bv_feed #(
-    // queries at work, each with a pose (query); legal: 2, 4, 8, 16
+    // queries in flight, each with a pose (query); legal: 2, 4, 8, 16
     parameter integer QUERIES = 16,
     parameter integer TAG_W = 5      // width of the tag (bit); legal: >= 1
 ) (

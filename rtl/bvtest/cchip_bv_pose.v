@@ -9,7 +9,7 @@
 //   memory       block RAM: the rows of M and t one after the other for cchip_bv_offset, and M and
 //                the 13 directions side by side for cchip_bv_lane_a
 //   cuts         every path
-//   reset        drops the pose at work, keeps those in memory
+//   reset        drops the pose in progress, keeps those in memory
 //   timing       A pose every 13 clocks; m_pose_valid 21 clocks after it was taken. What is read
 //                while it is written is any value.
 //   numbers      Those of cchip_pose_setup.
@@ -19,7 +19,7 @@
 //                multiplexers. cchip_bv_lane_a needs all 13 directions at once, at two clocks; the
 //                memories are read at these clocks, and no register waits.
 module cchip_bv_pose #(
-    parameter integer QUERIES = 16  // queries at work, each with a pose (query); legal: 2, 4, 8, 16
+    parameter integer QUERIES = 16  // queries in flight, one pose each (query); legal: 2, 4, 8, 16
 ) (
     input  wire                       clk,             // clock, rising edge
     input  wire                       rst,             // synchronous reset, active high
@@ -87,7 +87,7 @@ module cchip_bv_pose #(
   );
 
   // M and t are there one clock after the start, the directions from 7 clocks after it on, when the
-  // next pose may already be at work
+  // next pose may already be in progress
   wire start = s_pose_valid & s_pose_ready;
   reg start_q, done_q, done_q2;
   reg [CONTEXT_W-1:0] set_context_q, write_context_q, done_context_q, done_context_q2;

@@ -9,10 +9,10 @@
 //                back; a pose every 13 clocks, beside the node pairs
 //   rule         a context's pose may be replaced when no node pair of it is without a verdict
 //   cuts         every path but s_context to a block RAM; no ready from behind
-//   reset        drops poses and node pairs at work; poses in memory stay
+//   reset        drops poses and node pairs in flight; poses in memory stay
 // Bit for bit model::test_boxes and model::sort_children (docs/hardware/image.md, "Box test").
 module cchip_bv_unit #(
-    // queries at work, each with a pose (query); legal: 2, 4, 8, 16
+    // queries in flight, each with a pose (query); legal: 2, 4, 8, 16
     parameter integer QUERIES = 16,
     parameter integer TAG_W = 5      // width of the tag (bit); legal: >= 1
 ) (

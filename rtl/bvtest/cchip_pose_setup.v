@@ -9,7 +9,7 @@
 //   throughput   a direction on every clock, a query every 13 clocks
 //   numbers      |m| up to 9 fraction bits; b - c and c down to 6 and 7, at most 127
 //   cuts         every path
-//   reset        drops the query at work
+//   reset        drops the query in flight
 // Bit for bit model::set_up (docs/hardware/image.md).
 //   about        M rounded, and how each direction of B splits into directions of A.
 //   timing       A query every 13 clocks. pose_m, pose_t and epsilon from the clock after the query

@@ -7,7 +7,7 @@
 //   number       s_begin lends a leaf pair one of LEAVES numbers, on m_number; it comes back when
 //                the records of the leaf pair have left. {number, which of its up to four} names a
 //                primitive pair from the transform on
-//   judgement    only the traversal knows whether the query of a leaf pair was still at work when
+//   judgement    only the traversal knows whether the query of a leaf pair was still in flight when
 //                its result arrived. It says so in the order in which it took the results
 //                (s_judged); hits of live leaf pairs become records, those of dead ones are
 //                dropped. No epoch is compared here
@@ -66,7 +66,7 @@ module cchip_calc_result #(
     output wire [                      CONTEXT_W+10:0] m_leaf_data,
     // judgement of the next result that the traversal took
     input  wire                                      s_judged_valid,
-    input  wire                                      s_judged_live,  // its query was still at work
+    input  wire                                      s_judged_live,  // its query was in flight
     input  wire [                              31:0] s_judged_tag,       // tag of the query
     input  wire                                      s_done_valid,       // a query has ended
     output wire                                      s_done_ready,       // taken

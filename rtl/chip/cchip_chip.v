@@ -208,7 +208,7 @@ module cchip_chip #(
   wire answered, refused_kind, refused_provider, count_swap, count_rejected, count_stall;
   wire [`CCHIP_KIND_W-1:0] answered_module;
   wire [8:0] events = {refused_provider, swap_events, chip_event_q};
-  reg invalidate_q, invalidating_q;  // a command waits; one waits or is at work
+  reg invalidate_q, invalidating_q;  // a command waits; one waits or is in progress
   // it is a command: after a reset the cache clears itself, which ends without an event
   reg commanded_q;
   wire regs_rst;  // a clock later, as those of the other blocks

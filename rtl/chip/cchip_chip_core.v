@@ -99,7 +99,7 @@ module cchip_chip_core #(
     // last line of each range; empty if first > last
     input  wire [           LOCKS*32-1:0] lock_last,
     input  wire                           invalidate_valid,    // command: invalidate lines
-    output wire                           invalidate_ready,    // no command is at work
+    output wire                           invalidate_ready,    // no command is in progress
     input  wire [                   31:0] invalidate_first,    // first line
     input  wire [                   31:0] invalidate_last,     // last line
     // ---- the response to a read or a write is outstanding
@@ -128,7 +128,7 @@ module cchip_chip_core #(
     output wire                           refused_provider,
     // of each of four slots: pairs inside
     output wire [4*`CCHIP_PAIR_COUNT_W-1:0] slot_outstanding,
-    output wire [   4*`CCHIP_RM_ID_W-1:0] slot_rm_id,  // of each of four slots: module that works
+    output wire [   4*`CCHIP_RM_ID_W-1:0] slot_rm_id,  // of each of four slots: active module
     output wire [                    3:0] slot_decoupled,      // of each of four slots
     // pairs in the queues of kinds 1, 2, 3, see cchip_swaps
     output wire [3*$clog2(QUEUE_DEPTH+1)-1:0] swap_waiting,

@@ -35,7 +35,7 @@ module cchip_soft_reset #(
   `CCHIP_REFUSE(CLOCKS < 2 || CLOCKS > 256, cchip_error_soft_reset_CLOCKS_must_be_2_to_256)
 
   reg resetting_q, done_q;
-  reg [COUNT_W-1:0] quiet_q;  // clocks in a row on which memory owed nothing
+  reg [COUNT_W-1:0] quiet_q;  // clocks in a row with no pending response of memory
   wire ends = resetting_q && !outstanding && quiet_q == LAST[COUNT_W-1:0];
   always @(posedge clk) begin
     quiet_q <= request || outstanding ? {COUNT_W{1'b0}} : quiet_q + {{COUNT_W - 1{1'b0}}, 1'b1};

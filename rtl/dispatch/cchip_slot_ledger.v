@@ -18,7 +18,7 @@
 //   cuts         every path: each output is a flip-flop
 //   reset        no pair inside, no answer; open for pairs after CREDIT + 2 clocks
 //   about        The pairs inside one slot: how many there may be, what their numbers mean, and
-//                what becomes of them.
+//                how each of them ends.
 //   timing       After rst every number is made free: open for pairs after CREDIT + 2 clocks. After
 //                decouple 16 clocks pass, then the numbers are walked through, one per clock, and
 //                16 clocks later decoupled rises; without pairs inside it rises after the first 16.

@@ -74,7 +74,7 @@ module cchip_slots #(
     output wire                              refused_provider,
     // ---- state of the slots: of four, those that are not there show 0
     output wire [ 4*`CCHIP_PAIR_COUNT_W-1:0] outstanding,  // of each of four slots: pairs inside
-    output wire [      4*`CCHIP_RM_ID_W-1:0] rm_id,  // of each of four slots: module that works
+    output wire [      4*`CCHIP_RM_ID_W-1:0] rm_id,  // of each of four slots: active module
     output wire [                       3:0] decoupled,         // of each of four slots
     // ---- swaps (cchip_swaps): which kinds no slot can serve, the module that a slot shows, what a
     //      swap asks of it and what it answers, words for the configuration port

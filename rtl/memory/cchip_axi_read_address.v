@@ -4,7 +4,7 @@
 // cchip_axi_read_address: requests and read addresses of cchip_axi_read: a queue per client, one
 // stream of all of them in turn, and the address that is on offer. A request whose ID memory may
 // still answer for an earlier read is refused instead.
-//   refused      a request is refused if memory owed beats under its ID as it became the head of
+//   refused      a request is refused if beats were pending under its ID as it became the head of
 //                the requests, or if an address that was on offer then or since has been given up:
 //                that address may carry the same ID
 //   abandon      abandon = 1: the client of the read abandon_id has been answered. If its address

@@ -62,7 +62,7 @@ module cchip_cache #(
     input  wire [        LOCKS*LINE_W-1:0] lock_last,
     // ---- invalidation
     input  wire                            invalidate_valid,    // command: invalidate lines
-    // no command is at work; with invalidate_valid: taken
+    // no command is in progress; with invalidate_valid: taken
     output wire                            invalidate_ready,
     input  wire [              LINE_W-1:0] invalidate_first,    // first line to invalidate
     input  wire [              LINE_W-1:0] invalidate_last,     // last line to invalidate
@@ -253,7 +253,7 @@ module cchip_cache #(
   // ---- of the requests that have been looked up again one is the oldest, each in turn
   wire [2*PLACES-1:0] retried;
   // One is looked at for two clocks, because it is one of many: on the first its flag is read, on
-  // the second, told by look_q, it follows what becomes of it.
+  // the second, marked by look_q, its outcome is followed.
   reg [PLACE_W:0] oldest_q;  // {port, place}
   reg look_q, retried_q;
   reg [4:0] age_q;

@@ -31,7 +31,7 @@ module cchip_cache_fill #(
     input  wire                          allocate,            // a taken slot gets its frame
     input  wire [    $clog2(MISSES)-1:0] allocate_slot,       // the slot
     input  wire [           FRAME_W-1:0] allocate_frame,      // its frame
-    // bit s: slot s has a frame, which must not be given away
+    // bit s: slot s has a frame, which must not be reallocated
     output wire [            MISSES-1:0] held,
     output wire [            MISSES-1:0] filled,  // bit s: the data of slot s are in its frame
     // every slot is lost: the responses to all of them are outstanding

@@ -12,7 +12,7 @@
 //                last two alternate if both wait
 //   stage 6      a lookup is a hit, falls asleep on a line in flight, wants a frame, is refused, or
 //                is looked up again: if its set has changed since stage 1, if no frame may be
-//                reallocated, or if its wish is not granted
+//                reallocated, or if its request is not granted
 //   answers      7 clocks after s_valid of an idle port, in any order; m_data comes from the memory
 //                that data_addr addresses in stage 5, m_place stays for two clocks
 //   throughput   a lookup every two clocks
@@ -339,7 +339,7 @@ module cchip_cache_port #(
   assign walk_ways6 = in_range6;
   assign walk_keep6 = {victim6[1], slots6[SLOT_W+:SLOT_W], victim6[0], slots6[0+:SLOT_W]};
 
-  // ---- requests that wait for a line: told of in stage 7
+  // ---- requests that wait for a line: reported in stage 7
   reg sleep_q7;
   reg [SLOT_W-1:0] sleep_slot_q7;
   always @(posedge clk) begin

@@ -57,8 +57,8 @@ module cchip_cache_waiters #(
   reg [PLACES-1:0] asleep_q, awake_q, retried_q;
   reg serve_q;
   wire load = ~serve_q | serve_ready;
-  // That a place is to be served comes from far, so awake_q is told of it a clock later, by the
-  // number that is served then.
+  // Which place is served is known late in the clock, so awake_q is updated a clock later, with
+  // the number of the place served.
   reg [PLACE_W-1:0] serve_place_q;
   reg loaded_q;
   localparam [PLACES-1:0] ONE = 1;

@@ -5,7 +5,7 @@
 // cchip_config_controller: exchanges the module of a slot: fetches a bitstream, streams it into the
 // configuration port and sequences the slot. Phases CCHIP_PHASE_*, outcomes CCHIP_SWAP_*.
 //   order        HEADER, SHUTDOWN, DECOUPLE, RESET, TRANSFER, CHECK, ROC, RECOUPLE, REPORT; a bad
-//                header or a shutdown that fails leaves the slot at work; any failure from
+//                header or a shutdown that fails leaves the slot active; any failure from
 //                DECOUPLE on leaves it stopped, decoupled and in reset
 //   time         payload: CFG_DIVIDER clocks per port word (the paper's eq. 4) while memory keeps
 //                up; see the datasheet for the rest; every wait has a bound: shutdown_limit for the
@@ -21,7 +21,7 @@
 //                to clk
 //   cuts         every path but read_phase to read_clocks: each output comes from flip-flops,
 //                m_report_data through a multiplexer of two, swapped and rejected through its code
-//   reset        no swap, slots at work, except one whose transfer had begun and not ended well:
+//   reset        no swap, slots active, except one whose transfer had begun and not ended well:
 //                `half_q` outlives rst and keeps it stopped, decoupled and in reset until a good
 //                transfer
 module cchip_config_controller #(

@@ -18,12 +18,12 @@ module cchip_swap_request #(
     // {force, size, address, module, slot}
     input  wire [    `CCHIP_SWAP_REQUEST_W-1:0] s_swap_data,
     input  wire                                 begins,         // the swap of s_swap_data begins
-    // a request is accepted, or refused because a swap is at work
+    // a request is accepted, or refused because a swap is in progress
     input  wire                                 accept,
     // ---- the slots
     input  wire [                    SLOTS-1:0] quiet,  // bit of each slot: no pair is inside
     input  wire [                    SLOTS-1:0] decoupled,      // bit of each slot: it is decoupled
-    // bit of each slot: its reset on configuration is at work
+    // bit of each slot: its reset on configuration is in progress
     input  wire [                    SLOTS-1:0] roc_busy,
     input  wire [     `CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id,   // module that each slot shows
     input  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] lost,           // pairs that each slot has given up
@@ -39,10 +39,10 @@ module cchip_swap_request #(
     output wire [           `CCHIP_RM_ID_W-1:0] refuse_module,  // its module
     output wire                                 is_quiet,       // no pair is inside the slot
     output wire                                 is_decoupled,   // the slot is decoupled
-    // its reset on configuration is at work
+    // its reset on configuration is in progress
     output wire                                 is_roc_busy,
     output wire                                 match,  // the slot shows the module asked for
-    output wire                                 same,           // and is at work with it
+    output wire                                 same,           // and is active with it
     output wire                                 illegal,        // the request is illegal
     output wire [      `CCHIP_PAIR_COUNT_W-1:0] given_up        // pairs that the slot has given up
 );

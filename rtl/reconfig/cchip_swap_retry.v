@@ -7,7 +7,7 @@
 //   resting      entries that have failed and not ended well since rest together, for
 //                CCHIP_RETRY_CLOCKS << level clocks from the latest failure on. After each rest
 //                level grows by one, up to CCHIP_RETRY_DOUBLINGS; it is 0 again once no failed
-//                entry is left. An entry that is no longer valid is forgotten.
+//                entry is left. An entry that is no longer valid is dropped.
 //   hopeless     entries that rest after CCHIP_RETRY_DOUBLINGS failures in a row or more: no one
 //                should wait for them until they are tried again
 //   latency      1 clock from the report to resting

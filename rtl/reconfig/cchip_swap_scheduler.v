@@ -63,7 +63,7 @@ module cchip_swap_scheduler #(
     input  wire [                KINDS-1:0] full,  // the queue of kind k is full, at place k - 1
     // bit k - 1: no slot and no bitstream provides kind k
     output wire [                KINDS-1:0] no_provider,
-    // 3 bits per slot: module that works, ModuleId; 0: none or decoupled
+    // 3 bits per slot: active module, ModuleId; 0: none or decoupled
     input  wire [  `CCHIP_KIND_W*SLOTS-1:0] slot_module,
     // ---- software's swap, one clock
     input  wire                             command_valid,  // swap by software, one clock
@@ -307,7 +307,7 @@ module cchip_swap_scheduler #(
   wire        reject = `CCHIP_SWAP_SPOILT(s_report_code);
   integer i;
   always @(posedge clk) begin
-    // also of a command that is accepted: only one that was refused is told of
+    // also of an accepted command: only a refused one is reported
     if (command_valid) begin
       refused_slot_q   <= command_slot;
       refused_module_q <= command_module;

@@ -5,7 +5,7 @@
 // cchip_swap_sequencer: the state machine of a swap: requests, phases and reports of
 // cchip_config_controller, and what the slots are told in them.
 //   order        HEADER, SHUTDOWN, DECOUPLE, RESET, TRANSFER, CHECK, ROC, RECOUPLE, REPORT. A
-//                failure before DECOUPLE leaves the slot at work, a failure from there on leaves it
+//                failure before DECOUPLE leaves the slot active, a failure from there on leaves it
 //                stopped, decoupled and in reset.
 //   reset on configuration   hold_reset falls as roc_start rises, so the only reset that the new
 //                module gets once it is whole is that of the slot's ROC generator. rm_id counts
@@ -23,7 +23,7 @@
 //   clocks       cfg_error may come from any clock: it passes two flip-flops. Everything else
 //                belongs to clk.
 //   cuts         every path: each output is a flip-flop, m_report_data one of two
-//   reset        no swap, slots at work, except one whose transfer had begun and not ended well
+//   reset        no swap, slots active, except one whose transfer had begun and not ended well
 //                (cchip_swap_signals)
 module cchip_swap_sequencer #(
     parameter integer SLOTS = 1,         // slots; legal: 1..4

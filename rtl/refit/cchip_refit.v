@@ -11,7 +11,7 @@
 //                each level in work, so the size of an object does not matter. The stored volumes
 //                are rounded too much to compute those of the node above from them
 //   memory       the ports are those of a client of cchip_axi_read (slot 0) and cchip_axi_write
-//   end          m_code, m_line: the line at work, m_lines: lines read. After an error a part of
+//   end          m_code, m_line: the current line, m_lines: lines read. After an error a part of
 //                the nodes is new, the others are old: no query may use the image
 //   silence      each wait for memory lasts `limit` clocks (cchip_timeout) at most; it must exceed
 //                those of the masters. What is outstanding then is waited for in the background: a
@@ -41,7 +41,7 @@ module cchip_refit #(
     output wire                           m_valid,        // the refit has ended
     input  wire                           m_ready,        // its end is taken
     output wire [`CCHIP_REFIT_CODE_W-1:0] m_code,         // RefitCode
-    // line at work when it ended, 0 if there was none
+    // current line when it ended, 0 if there was none
     output wire [                   23:0] m_line,
     output wire [                   23:0] m_lines,        // lines read
     // ---- reads
@@ -73,11 +73,11 @@ module cchip_refit #(
                 cchip_error_refit_DATA_W_must_be_64_128_256_or_512)
 
   localparam [3:0] IDLE = 4'd0;
-  localparam [3:0] LINE = 4'd1;  // the line at work is requested
+  localparam [3:0] LINE = 4'd1;  // the current line is requested
   localparam [3:0] READ = 4'd2;  // it comes
   localparam [3:0] NODE = 4'd3;  // it is a node
   localparam [3:0] LEAF = 4'd4;  // or a leaf
-  localparam [3:0] CHILD = 4'd5;  // a child becomes the line at work
+  localparam [3:0] CHILD = 4'd5;  // a child becomes the current line
   localparam [3:0] PASS = 4'd6;  // intervals pass
   localparam [3:0] NEXT = 4'd7;  // a child is done
   localparam [3:0] UNION = 4'd8;  // all are
@@ -97,7 +97,7 @@ module cchip_refit #(
   // ---- the refit
   reg [31:0] base_q;
   reg [24:0] lines_q;
-  reg [23:0] line_q;  // at work
+  reg [23:0] line_q;  // current
   reg [1:0] kind_q;  // of it
   reg [23:0] visited_q;
   reg [`CCHIP_REFIT_CODE_W-1:0] code_q;

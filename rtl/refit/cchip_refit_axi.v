@@ -7,7 +7,7 @@
 //   traffic      one line at a time: a read or a write, each a burst of a whole line, aligned
 //   limit        of each read and write. The engine itself waits 4 `limit` + 64 clocks, 2^32 - 1 at
 //                most, longer than its masters need to say that memory is silent; 0: the defaults
-//   outstanding  memory owes an answer to a request of this refit, or of one that was given up
+//   outstanding  the answer to a request of this refit, or of an abandoned one, is pending
 //   latency      7 clocks from s_valid to arvalid
 //   cuts         every path: each output is a flip-flop or decoded from flip-flops
 //   reset        must reset the bus too, unless s_ready = 1 or m_valid = 1, and outstanding = 0:
@@ -38,10 +38,10 @@ module cchip_refit_axi #(
     output wire                           m_valid,        // the refit has ended
     input  wire                           m_ready,        // its end is taken
     output wire [`CCHIP_REFIT_CODE_W-1:0] m_code,         // RefitCode, docs/hardware/definitions.md
-    // line at work when it ended, 0 if there was none
+    // current line when it ended, 0 if there was none
     output wire [                   23:0] m_line,
     output wire [                   23:0] m_lines,        // lines read
-    // memory owes an answer to a request, given up or not
+    // the answer to a request, abandoned or not, is pending
     output wire                           outstanding,
     // ---- memory
     output wire                           m_axi_arvalid,  // AXI4 read address

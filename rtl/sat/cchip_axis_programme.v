@@ -34,7 +34,7 @@ module cchip_axis_programme #(
     parameter integer WARPED_EXACT = 1
 ) (
     input  wire                          clk,              // clock, rising edge
-    // synchronous reset, active high: no verdict of before has an effect
+    // synchronous reset, active high: no earlier verdict has an effect
     input  wire                          rst,
     input  wire                          s_valid,          // there is a verdict
     input  wire [    `CCHIP_STATE_W-1:0] s_state,          // programme state of its beat, see below

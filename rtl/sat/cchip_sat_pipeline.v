@@ -22,7 +22,7 @@ module cchip_sat_pipeline #(
     parameter integer USER_W = 8                // width of the user field (bit); legal: >= 1
 ) (
     input  wire                            clk,                      // clock, rising edge
-    // synchronous reset, active high: no beat of before comes out
+    // synchronous reset, active high: no earlier beat comes out
     input  wire                            rst,
     input  wire                            s_beat_valid,  // there is a beat; it is always taken
     input  wire [  `CCHIP_AXIS_CODE_W-1:0] s_beat_code,  // axis code {class[2:0], k[2:0], l[2:0]}

@@ -16,7 +16,7 @@
 //   throughput   a leaf pair every 9 clocks
 //   latency      9 clocks from s_leaf_valid to m_valid
 //   cuts         every path from s_leaf and s_start, and to m_credit
-//   reset        leaf pairs inside are forgotten
+//   reset        leaf pairs inside are dropped
 module cchip_leaf_feed #(
     parameter integer QUERIES = 16,  // contexts (query); legal: 2, 4, 8, 16
     parameter integer LEAF_W = 6  // width of a number of cchip_calc_result (bit); legal: 1 or more

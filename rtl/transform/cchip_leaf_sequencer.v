@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_assert.vh"
-// cchip_leaf_sequencer: which vertex of a leaf pair is at work in cchip_vertex_transform: first the
+// cchip_leaf_sequencer: which vertex of a leaf pair is current in cchip_vertex_transform: first the
 // origin of A's leaf, then vertex after vertex of one pair of primitives after the other.
 //   order        primitive 0 of A with 0, then 1 of B, then 1 of A with 0 and 1 of B; 3 vertices a
 //                pair or with a quad 4, where a triangle's last one comes twice

@@ -14,7 +14,7 @@
 //                min(15, 1 + ceil(max(error of A, error of B) / 2^n)), where an error is s_error_*
 //                and 1 for each flag of s_lost that a vertex of the pair has
 //   cuts         every path: each output is a flip-flop
-//   reset        vertices inside are forgotten
+//   reset        vertices inside are dropped
 // Bit for bit model::normalise.
 module cchip_normaliser #(
     parameter integer COORD_W = 16,  // width of a coordinate on the grid (bit); legal: 4..20

@@ -14,7 +14,7 @@
 //                has not come
 //   cuts         every path: each output is a flip-flop, but those of m_a, m_b and m_kind, which
 //                are one multiplexer behind theirs
-//   reset        pairs inside are forgotten; the credit is whole
+//   reset        pairs inside are dropped; the credit is whole
 //   timing       CCHIP_TRANSFORM_LATENCY(PASSES) clocks from the first clock of a leaf pair to its
 //                first vertex, 33 or 37; then PASSES clocks a vertex without a gap. 4 for two
 //                triangles, 13 for four pairs of triangles, 5 with quads. It begins while at least

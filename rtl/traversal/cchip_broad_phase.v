@@ -32,7 +32,7 @@ module cchip_broad_phase #(
     // ---- clock and reset
     input  wire                            clk,                // clock, rising edge
     input  wire                            rst,                // synchronous reset, active high
-    // ---- limits; they may change on any clock, and count for the queries at work too.
+    // ---- limits; they may change on any clock, and count for the queries in flight too.
     //      node pairs of a query in flight, 0..7; 0 counts as 1; half of it with leaf pairs out
     // node pairs of a query that may be in flight, 0..7; 0 counts as 1; half of it for a query for
     // the first hit with leaf pairs out
@@ -73,10 +73,10 @@ module cchip_broad_phase #(
     input  wire [                     2:0] s_result_open,      // hits that are not definite, 0..4
     // 0, or the code with which the query is to end
     input  wire [                     2:0] s_result_code,
-    // ---- judgements of results: of each result, in their order: was its query still at work?
+    // ---- judgements of results: of each result, in their order: was its query still in flight?
     // judgement of a result, in the order of s_result
     output wire                            m_judged_valid,
-    output wire                            m_judged_live,      // its query was still at work
+    output wire                            m_judged_live,      // its query was still in flight
     output wire [                    31:0] m_judged_tag,       // tag of that query
     // ---- answers: queries that have ended
     output wire                            m_done_valid,       // a query has ended
@@ -94,7 +94,7 @@ module cchip_broad_phase #(
     input  wire [            LOCKS*32-1:0] lock_last,
     // ---- invalidation
     input  wire                            invalidate_valid,   // command: invalidate lines
-    output wire                            invalidate_ready,   // no command is at work
+    output wire                            invalidate_ready,   // no command is in progress
     input  wire [                    31:0] invalidate_first,   // first line to invalidate
     input  wire [                    31:0] invalidate_last,    // last line to invalidate
     // ---- events to count: what happens on this clock, for counters

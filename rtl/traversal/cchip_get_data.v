@@ -13,8 +13,8 @@
 //                s_line_valid and on the next clock, on which s_line_place stays; to the box test
 //                on the first clock of m_pair_valid and the next. To who takes leaf pairs it is
 //                eight of 64 bits, with m_leaf_valid and on the seven clocks after it; on the last
-//                of them m_leaf_left is 1. So many wires less go there, and a leaf pair is at work
-//                for longer than that
+//                of them m_leaf_left is 1. That saves wires, and a leaf pair is in flight for
+//                longer than that
 //   check        what a line says of its children, and of a header, leaves with `lookup` when the
 //                verdict of the box test comes: code, kinds and lines of the children
 //   latency      1 clock from s_valid to m_line_valid, 8 from the second line to m_pair_valid, 7 to
@@ -59,7 +59,7 @@ module cchip_get_data #(
     // the next clock, on which s_line_place stays
     input  wire [                                        511:0] s_line_data,
     // ---- node pairs, with the children that count: none if these are headers; a pair that is
-    //      taken on the next clock is told of on this one. That is the third clock of the pair or
+    //      taken on the next clock is announced on this one. That is the third clock of the pair or
     //      later
     output wire                                                 m_pair_valid,     // a node pair
     // the box test takes the pair on the next clock

@@ -3,8 +3,8 @@
 `include "cchip_assert.vh"
 // cchip_leaf_queue: leaf pairs that wait for a primitive test. One entry holds all of a node
 // pair; they leave one by one.
-//   rule         a pair of a query that is still at work is fetched when the receiver has room for
-//                it; one of a query that has ended is dropped, and told
+//   rule         a pair of a query still in flight is fetched when the receiver has room for it;
+//                one of a query that has ended is dropped, and reported
 //   credit       the receiver has room for CREDIT pairs; s_credit = 1 when one has left it
 //   latency      5 clocks from s_valid to m_valid
 //   throughput   a pair every third clock, a clock more between entries
@@ -76,7 +76,7 @@ module cchip_leaf_queue #(
       .m_data (queue_entry)
   );
 
-  // ---- the entry at work. Of its next pair: chosen, judged, waiting to be taken
+  // ---- the current entry. Of its next pair: chosen, judged, waiting to be taken
   localparam [1:0] CHOOSE = 2'd0, JUDGE = 2'd1, TAKE = 2'd2;
   reg work_q;
   reg [1:0] state_q;

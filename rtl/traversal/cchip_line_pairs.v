@@ -15,7 +15,7 @@
 //   throughput   a line per port and two clocks
 //   credit       a place is used again only after its pair has left its queue
 //   cuts         every path: each output is a flip-flop
-//   reset        no line of before may come; the queues are empty
+//   reset        no earlier line may come; the queues are empty
 //   rules        Each line comes once.
 //   inside       Of each place one bit, which every line inverts: a second line finds it 1. For
 //                each port a cchip_block_ram of lines and another one of the lines of leaf pairs,

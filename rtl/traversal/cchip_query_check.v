@@ -6,7 +6,7 @@
 //   bad          an entry of the map's matrix is beyond 1, RESERVED is not 0, or an image begins in
 //                the last 2^24 lines: an image has fewer, but line numbers could wrap
 //   latency      waits and bad are 3 clocks behind the acceptance of the query; after a start that
-//                was tried in vain waits is 0 for 2 clocks
+//                was not possible waits is 0 for 2 clocks
 //   throughput   a query every 5 clocks
 //   cuts         every path: each output is a flip-flop, waits two of them
 //   reset        no query

@@ -28,7 +28,7 @@ module cchip_traversal #(
 ) (
     input  wire                            clk,                // clock, rising edge
     input  wire                            rst,                // synchronous reset, active high
-    // ---- limits; they may change on any clock, and count for the queries at work too. node pairs
+    // ---- limits; they may change on any clock, and apply to queries in flight, too. Node pairs
     //      of a query in flight, 0..7; 0 counts as 1; half of it with leaf pairs out
     // node pairs of a query that may be in flight, 0..7; 0 counts as 1; half of it for a query for
     // the first hit with leaf pairs out
@@ -92,12 +92,12 @@ module cchip_traversal #(
     input  wire [                     2:0] s_result_code,
     // the receiver has room for one more leaf pair
     input  wire                            s_credit,
-    // ---- of each result, in the order of s_result: was its query still at work? On the clock on
+    // ---- of each result, in the order of s_result: was its query still in flight? On the clock on
     //      which the end that it may bring about enters the queue of m_done, which it leaves a
     //      clock later at the earliest
     // judgement of a result, in the order of s_result
     output wire                            m_judged_valid,
-    output wire                            m_judged_live,      // its query was still at work
+    output wire                            m_judged_live,      // its query was still in flight
     output wire [                    31:0] m_judged_tag,       // tag of that query
     // ---- queries that have ended
     output wire                            m_done_valid,       // a query has ended
@@ -122,7 +122,7 @@ module cchip_traversal #(
   localparam integer NODES_W = `CCHIP_NODES_W;
   localparam integer STACK_W = $clog2(STACK);
   localparam integer STATE_W = `CCHIP_QUERY_STATE_W(STACK_W);
-  // pairs of one epoch of a query: entries of the leaf queue and the one at work, 16 leaf pairs
+  // pairs of one epoch of a query: entries of the leaf queue and the current one, 16 leaf pairs
   // each; a pair at every place; what is behind cchip_get_data. At most 4,027
   localparam [31:0] WORK_MOST = 16 * LEAF_DEPTH + 16 + PAIRS + LEAVES + 1899;
   localparam integer WORK_W = 12;

@@ -30,7 +30,7 @@ module cchip_traversal_contexts #(
     input  wire                              s_own,
     // epoch of the event in stage 5; with s_own that of the query
     output wire [                       1:0] epoch5,
-    output wire                              live5,  // the query of that epoch is still at work
+    output wire                              live5,  // the query of that epoch is still in flight
     // record QUERY_STATE (definitions, docs/hardware/definitions.md)
     output wire [          $clog2(STACK)+80:0] state5,
     output wire [  `CCHIP_QUERY_LINES_W-1:0] constants5,     // record QUERY_LINES

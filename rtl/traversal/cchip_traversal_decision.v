@@ -43,7 +43,7 @@ module cchip_traversal_decision #(
     input  wire                      s_is_start,             // a query starts
     input  wire                      s_is_pop,               // a node pair leaves the stack
     input  wire [               1:0] s_epoch,                // its epoch
-    input  wire                      s_live,                 // its query is still at work
+    input  wire                      s_live,                 // its query is still in flight
     // ---- the query: records QUERY_STATE and QUERY_LINES
     // {epoch, has a query, mode, entries of the stack, node pairs in flight, steps, hits and open
     // pairs, open pairs, hit}
