@@ -235,12 +235,12 @@ MUTANTS = [
     ("cchip_axi_write bounded", WRITE, "wire b_counts = b_valid_q & address_some & data_some;",
      "wire b_counts = b_valid_q & address_some;"),
     ("cchip_axi_write bounded", WRITE_COLLECT, "wire ends = last || place == LAST_BEAT[2:0];", "wire ends = last;"),
-    ("cchip_axi_write bounded", WRITE_SEND, "assign issue = s_write_valid & take_free & ~owed & room & aw_ready;",
-     "assign issue = s_write_valid & take_free & ~owed & aw_ready;"),
+    ("cchip_axi_write bounded", WRITE_SEND, "assign issue = s_write_valid & take_free & ~pending & room & aw_ready;",
+     "assign issue = s_write_valid & take_free & ~pending & aw_ready;"),
     ("cchip_axi_write bounded_1", WRITE_SEND, "s_beat_strb & {STRB_W{awaited}}", "s_beat_strb"),
     ("cchip_axi_write bounded", WRITE_COLLECT, "turn_d = begun_d ? turn_q : grant;", "turn_d = grant;"),
-    ("cchip_axi_write bounded", WRITE_SEND, "wire refuse = s_write_valid & take_free & owed & ~awaited;",
-     "wire refuse = s_write_valid & take_free & owed;"),
+    ("cchip_axi_write bounded", WRITE_SEND, "wire refuse = s_write_valid & take_free & pending & ~awaited;",
+     "wire refuse = s_write_valid & take_free & pending;"),
     # a verdict, a stack, do not wait for the query's event inside, at two places; further room that there is not; the
     # same room twice; a result is lost behind a verdict; results are never next, or always; a context that has a query
     # gets another; the next context is chosen while a start is on its way; a place that came back is not the one that
