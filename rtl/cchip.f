@@ -3,6 +3,12 @@ common/cchip_delay.v
 common/cchip_reset_copy.v
 common/cchip_skid_buffer.v
 common/cchip_fifo.v
+common/cchip_synchroniser.v
+common/cchip_crossing_state.v
+common/cchip_async_fifo.v
+common/cchip_level_crossing.v
+common/cchip_axi_cdc.v
+common/cchip_axil_cdc.v
 common/cchip_ram.v
 common/cchip_dual_ram.v
 common/cchip_block_ram.v
@@ -122,3 +128,4 @@ chip/cchip_chip_core.v
 regs/cchip_chip_regs.v
 chip/cchip_soft_reset.v
 chip/cchip_chip.v
+chip/cchip_chip_cdc.v

