@@ -109,6 +109,8 @@ reconfig/cchip_swap_signals.v
 reconfig/cchip_swap_request.v
 reconfig/cchip_swap_sequencer.v
 reconfig/cchip_config_controller.v
+reconfig/cchip_icap_cell.v
+reconfig/cchip_icap.v
 regs/cchip_subsystem_regs.v
 reconfig/cchip_bitstream_table.v
 reconfig/cchip_swap_retry.v

@@ -42,7 +42,9 @@ VERTS = "cchip_error_VERTS_must_be_3_3_or_3_4_or_4_4"
 MUL_WIDE = "cchip_error_mul_wide_A_W_and_B_W_must_be_2_to_52"
 DELAY = "cchip_error_delay_WIDTH_below_1_or_DEPTH_below_0_or_RESET_not_0_or_1"
 MEMORY = "cchip_error_delay_MEMORY_needs_DEPTH_3_and_RESET_0"
-ASYNC = "cchip_error_async_fifo_DEPTH_must_be_a_power_of_two_4_to_4096"
+AICAP = "cchip_error_icap_FAMILY_must_be_7_or_8"
+PAUSE = "cchip_error_icap_PAUSE_must_be_16_to_65535"
+SYNC = "cchip_error_async_fifo_DEPTH_must_be_a_power_of_two_4_to_4096"
 ASYNC_W = "cchip_error_async_fifo_WIDTH_below_1_or_STAGES_not_2_to_4"
 SYNC = "cchip_error_synchroniser_WIDTH_below_1_or_STAGES_below_2"
 LEVEL = "cchip_error_level_crossing_STAGES_not_2_to_4"
@@ -120,6 +122,8 @@ ILLEGAL = [
     *(("cchip_async_fifo", {"DEPTH": n}, ASYNC) for n in (0, 2, 6, 8192)),
     *(("cchip_async_fifo", {name: n}, ASYNC_W) for name, n in (("WIDTH", 0), ("STAGES", 1), ("STAGES", 5))),
     ("cchip_synchroniser", {"WIDTH": 0}, SYNC),
+    *(("cchip_icap", {"FAMILY": n}, ICAP) for n in (6, 9)),
+    *(("cchip_icap", {"PAUSE": n}, PAUSE) for n in (15, 65536)),
     ("cchip_synchroniser", {"STAGES": 1}, SYNC),
     *(("cchip_level_crossing", {"STAGES": n}, LEVEL) for n in (1, 5)),
     ("cchip_delay", {"WIDTH": 0}, DELAY),
