@@ -4,8 +4,8 @@
 // cchip_icap: from the configuration port of cchip_config_controller (CFG_W = 32) to the internal
 // configuration access port of Xilinx devices, ICAPE2 or ICAPE3, in cchip_icap_cell.
 //   latency      1 clock from cfg_valid to the word at the cell
-//   throughput   one word per clock; the cell limits clk, 100 MHz on 7 series: see the data sheet of
-//                the device, or take a slower clock for the chip
+//   throughput   one word per clock; the cell limits clk, 100 MHz on 7 series: see the data sheet
+//                of the device, or take a slower clock for the chip
 //   numbers      byte 0 of the file is cfg_data[7:0]. The cell wants byte 0 highest and the bits of
 //                each byte swapped (UG470, UG570), which together is all 32 bits in reverse: the
 //                sync word's bytes AA 99 55 66 come as 0x665599AA and leave as 0x5599AA66

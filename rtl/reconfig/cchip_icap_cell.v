@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
-// cchip_icap_cell: the port ICAPE2 or ICAPE3 of a Xilinx device, portable twin for simulation and for
-// all other devices. In a Xilinx device rtl/cchip_xilinx.f puts the cell itself in its place.
+// cchip_icap_cell: the port ICAPE2 or ICAPE3 of a Xilinx device, portable twin for simulation and
+// for all other devices. In a Xilinx device rtl/cchip_xilinx.f puts the cell itself in its place.
 //   twin         undoes the swap of the bits of each byte. The sync word aligns it, the command
-//                DESYNC ends that; status as in UG470: 0x9F without, 0xDF with alignment, bit 7 is 0
-//                after a word of another kind where packets begin, until the next sync word
+//                DESYNC ends that; status as in UG470: 0x9F without, 0xDF with alignment, bit 7 is
+//                0 after a word of another kind where packets begin, until the next sync word
 //   latency      1 clock to the status
 //   cuts         every path: all outputs are flip-flops or constants
 //   reset        none: what a device knows outlives the reset of its logic; power-up not aligned
