@@ -5,12 +5,12 @@
 usage: bitstream.py make RAW --slot N --module N -o FILE [--port 8|32] [--vendor xilinx|none]
        bitstream.py check FILE [--slot N] [--module N] [--port 8|32]
 
-make   RAW: a partial bitstream without a header of its own, of Vivado the .bin of `write_bitstream -bin_file`, in the byte
-       order of an 8-bit port. With --vendor xilinx (the default) its sync word AA 99 55 66 must be within its first 1,024
-       bytes; a .bit file, or one with bits or bytes swapped for a flash, is refused. Compressed and encrypted ones pass as
-       they are: the device expands and decrypts them. --vendor none takes any bytes. --slot: 0..3, --module: 0..4, as in
-       docs/hardware/definitions.md. --port: width of the configuration port CFG_W (default 32); for 32, zeros fill the
-       last word. FILE must be stored at an address that is a multiple of 64
+make   RAW: a partial bitstream without a header of its own, of Vivado the .bin of `write_bitstream -bin_file`, in the
+       byte order of an 8-bit port. With --vendor xilinx (the default) its sync word AA 99 55 66 must be within its
+       first 1,024 bytes; a .bit file, or one with bits or bytes swapped for a flash, is refused. Compressed and
+       encrypted ones pass as they are: the device expands and decrypts them. --vendor none takes any bytes. --slot:
+       0..3, --module: 0..4, as in docs/hardware/definitions.md. --port: width of the configuration port CFG_W (default
+       32); for 32, zeros fill the last word. FILE must be stored at an address that is a multiple of 64
 check  refuses what a swap would refuse, with the name of the code that it would report; prints module, slot, length and
        CRC. With --slot and --module it must be for these
 
@@ -80,8 +80,8 @@ def check(data, slot=None, module=None, port=32):
         raise Refused(f"MAGIC: the file ends after {len(data)} bytes, the header has {HEADER}")
     magic, is_module, is_slot, zero, length, crc = struct.unpack("<IBBHII", data[:HEADER])
     if magic != MAGIC or zero:
-        raise Refused(f"MAGIC: it begins with 0x{magic:08x} and bytes 6 and 7 are 0x{zero:04x}, not 0x{MAGIC:08x} and 0; "
-                      "make it with bitstream.py make")
+        raise Refused(f"MAGIC: it begins with 0x{magic:08x} and bytes 6 and 7 are 0x{zero:04x}, not 0x{MAGIC:08x} "
+                      "and 0; make it with bitstream.py make")
     if slot is not None and slot != is_slot:
         raise Refused(f"SLOT: it is for slot {is_slot}, not {slot}")
     if is_slot >= SLOTS:
@@ -95,7 +95,8 @@ def check(data, slot=None, module=None, port=32):
         raise Refused(f"LENGTH: {length} bytes announced, {len(payload)} follow the header; they must be the same, "
                       f"{LEAST} or more, in whole words of a port of {port} bit")
     if zlib.crc32(payload) != crc:
-        raise Refused(f"CRC: 0x{crc:08x} in the header, 0x{zlib.crc32(payload):08x} is that of the bytes; copy it again")
+        raise Refused(f"CRC: 0x{crc:08x} in the header, 0x{zlib.crc32(payload):08x} is that of the bytes; "
+                      "copy it again")
     return is_slot, is_module, length, crc
 
 

@@ -77,7 +77,8 @@ class Bitstream(unittest.TestCase):
     def test_files_that_a_swap_would_refuse(self):
         good = HEADER + RAW
         self.refuse(good[:15], "MAGIC")
-        for at, text in ((0, "MAGIC"), (6, "MAGIC"), (5, "SLOT"), (4, "MODULE"), (8, "LENGTH"), (12, "CRC"), (20, "CRC")):
+        for at, text in ((0, "MAGIC"), (6, "MAGIC"), (5, "SLOT"), (4, "MODULE"), (8, "LENGTH"), (12, "CRC"),
+                         (20, "CRC")):
             self.refuse(good[:at] + bytes([good[at] ^ 0x10]) + good[at + 1:], text)
         self.refuse(good + b"0000", "LENGTH")
         self.refuse(good, "SLOT", "--slot", 0)
