@@ -13,7 +13,7 @@ SCRIPT = ROOT / "scripts" / "bitstream.py"
 RAW = bytes.fromhex("FFFFFFFF" "AA995566" "20000000" "20000000")
 # Written out by the contract of cchip_bitstream_header: word 0 is 0x43434250, word 1 module and slot << 8, word 2 the
 # length, word 3 the CRC-32, each with its lowest byte first. make_bitstream() of C++ made the same 16 bytes.
-HEADER = bytes.fromhex("50424343" "01020000" "10000000" "")
+HEADER = bytes.fromhex("50424343" "01020000" "10000000" "1D1464E6")
 
 
 def crc(data):
