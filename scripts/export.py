@@ -14,7 +14,7 @@ usage: export.py [--out FOLDER] [--programs FOLDER] [--pairs N] [--seed N] [--mh
 
 FOLDER/TOP holds TOP.v, whose ports have Vivado's interface attributes, with every list rtl/cchip_DEVICE.f a variant
 TOP_DEVICE.v with the multiplier leaf of that device, file lists, constraints, datasheets, licences, vectors, a
-self-checking bench, README.md and, of the chip after `make venv`, its IP-XACT component. Modules are found by name: one
+self-checking bench, TOP.vhd for VHDL, README.md and, of the chip after `make venv`, its IP-XACT component. Modules are found by name: one
 module per file, named like it. Exit codes: 0 done, 1 something is missing."""
 import argparse
 import csv
@@ -27,6 +27,7 @@ import sys
 
 import datasheet
 import interfaces
+import vhdl
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RTL = ROOT / "rtl"
@@ -271,7 +272,7 @@ def readme(top, files, pairs, mhz, described):
     return f"""<!-- SPDX-License-Identifier: Apache-2.0 -->
 # {top}, collisionchip {version()}
 
-- `{top}.v`: the whole RTL in one file, no include folder, top `{top}`; `.f`: as a file list.
+- `{top}.v`: the whole RTL in one file, no include folder, top `{top}`; `.f`: as a file list; `.vhd`: its component for VHDL.
 {device}{more}{ip_xact}- [Datasheet](docs/modules/{top}.md): ports, parameters, timing, area.
 - `constraints/`: templates for ECP5 (LPF), Vivado (XDC), Quartus and others (SDC), clock {mhz:g} MHz; each says what to change.
 - Licence of the RTL: [Solderpad 2.1](LICENSES/SHL-2.1.txt), or take it as [Apache-2.0](LICENSES/Apache-2.0.txt) like all the rest.
@@ -339,6 +340,7 @@ def export(top, options):
     models = simulation_models(top)
     if models:
         (folder / "simulation_models.v").write_text(models)
+    (folder / f"{top}.vhd").write_text(vhdl.package(top))
     for kind, text in constraints(top, mhz).items():
         (folder / "constraints" / f"{top}.{kind}").write_text(text)
     write_pages(folder, closure(top, read_list(RTL / "cchip.f") | (read_list(MODELS) if models else {})))
@@ -374,7 +376,7 @@ def main():
             if top not in tops:
                 raise ExportError(f"{top} cannot be exported, one of: {' '.join(tops)}")
             export(top, options)
-    except ExportError as error:
+    except (ExportError, vhdl.VhdlError) as error:
         print(f"export.py: {error}", file=sys.stderr)
         return 1
     return 0
