@@ -4,9 +4,9 @@
 
 usage: vhdl.py TOP [-o FILE]     TOP: a module of rtl/cchip.f; FILE: default standard output
 
-The package is TOP_package, VHDL-93 and newer. Ports are std_logic and std_logic_vector, ranges follow the generics as in
-the RTL. Generics are integers with the RTL's defaults; one that follows another generic in the RTL has the value for the
-defaults, so set both. A number of more than 31 bit, which a VHDL integer does not hold, is a std_logic_vector.
+The package is TOP_package, VHDL-93 and newer. Ports are std_logic and std_logic_vector, ranges follow the generics as
+in the RTL. Generics are integers with the RTL's defaults; one that follows another generic in the RTL has the value for
+the defaults, so set both. A number of more than 31 bit, which a VHDL integer does not hold, is a std_logic_vector.
 Exit codes: 0 done, 1 something cannot be said in VHDL, 2 bad arguments."""
 import json
 import pathlib
@@ -97,7 +97,7 @@ def component(top):
     lines += ["    );"] if parameters else []
     lines.append("    port (")
     group = None
-    for direction, width, name, meaning, of in ports:
+    for direction, width, name, _, of in ports:
         if of != group:
             group = of
             lines += comment(f"---- {re.split('[:;]', of)[0]}" if of else "", "      ")

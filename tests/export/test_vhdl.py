@@ -46,7 +46,8 @@ class Vhdl(unittest.TestCase):
                 if code or said:
                     return said or "failed"
             # binds nothing, but elaborates ranges, port maps and the assertion
-            code, said = run(tool("ghdl"), "--elab-run", f"--std={standard}", "--warn-no-binding", "user", "--stop-time=1ns", cwd=folder)
+            code, said = run(tool("ghdl"), "--elab-run", f"--std={standard}", "--warn-no-binding", "user",
+                             "--stop-time=1ns", cwd=folder)
             return said + ("failed" if code else "")
 
     def test_ghdl_takes_every_top(self):
