@@ -14,8 +14,8 @@ usage: export.py [--out FOLDER] [--programs FOLDER] [--pairs N] [--seed N] [--mh
 
 FOLDER/TOP holds TOP.v, whose ports have Vivado's interface attributes, with every list rtl/cchip_DEVICE.f a variant
 TOP_DEVICE.v with the multiplier leaf of that device, file lists, constraints, datasheets, licences, vectors, a
-self-checking bench, TOP.vhd for VHDL, README.md and, of the chip after `make venv`, its IP-XACT component. Modules are found by
-name: one module per file, named like it. Exit codes: 0 done, 1 something is missing."""
+self-checking bench, TOP.vhd for VHDL, README.md and, of the chip after `make venv`, its IP-XACT component. Modules are
+found by name: one module per file, named like it. Exit codes: 0 done, 1 something is missing."""
 import argparse
 import csv
 import os

@@ -13,8 +13,8 @@
 //                2 clocks or more. Reset all three, and both buses with them, unless nothing is
 //                outstanding: a bridge does not end what the bus behind it still awaits
 //   constraints  scripts/vivado/cdc.xdc, scripts/quartus/cdc.sdc
-//   test         tests/icarus/bench_cdc.v: the bridges; bench_chip_cdc.v: registers, a read of memory
-//                and the interrupt through them
+//   test         tests/icarus/bench_cdc.v: the bridges; bench_chip_cdc.v: registers, a read of
+//                memory and the interrupt through them
 module cchip_chip_cdc #(
     parameter integer QUERIES = 16,  // queries at once (query); legal: 2, 4, 8, 16
     parameter integer PAIRS = 48,  // node pairs in flight; legal: see cchip_traversal
