@@ -3,15 +3,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cchip/assembly.hpp>
 #include <cchip/internal/geometry/decimal.hpp>
+#include <cchip/program/csv_reader.hpp>
 #include <cchip/program/output_file.hpp>
 #include <cchip/program/usage_error.hpp>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 namespace cchip::app {
@@ -19,11 +23,35 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+std::map<std::string, double> parse_joints(std::string_view text) {
+  std::map<std::string, double> values;
+  while (!text.empty()) {
+    const std::string_view item = text.substr(0, text.find(','));
+    text.remove_prefix(std::min(text.size(), item.size() + 1));
+    const std::size_t equals = item.rfind('=');
+    if (equals == std::string_view::npos || equals == 0) {
+      throw UsageError(fmt::format("--joints: got '{}'; write name=value, with commas between them", item));
+    }
+    try {
+      const std::string name(trimmed_field(item.substr(0, equals)));
+      if (values.emplace(name, parse_coordinate(item.substr(equals + 1))).second) continue;
+      throw UsageError(fmt::format("--joints: joint '{}' is there twice; remove one of them", name));
+    } catch (const std::invalid_argument& error) {
+      throw UsageError(fmt::format("--joints: '{}': {}", item, error.what()));
+    }
+  }
+  return values;
+}
+
 Assembly read_assembly(const ClashOptions& options) {
   AssemblyLoadOptions load;
   load.unit = options.unit;
   load.rules = options.rules;
   load.lenient = options.lenient;
+  load.joints = parse_joints(options.joints);
+  load.packages = options.packages;
+  load.srdf = options.srdf;
+  load.neighbours = options.neighbours;
   std::optional<double> clearance;
   if (!options.clearance.empty()) {
     clearance = read_decimal(options.clearance);
@@ -74,6 +102,10 @@ void write_table(const Assembly& assembly, const AssemblyReport& report, std::os
     if (!pair.is_judged) out << "not judged: " << sentence(assembly, pair) << '\n';
     if (has_reason(assembly, pair)) out << "allowed: " << sentence(assembly, pair) << '\n';
   }
+  if (!assembly.left_out.empty()) {
+    out << "left out: " << assembly.left_out.size()
+        << " pairs of links that a joint joins; --neighbours looks at them\n";
+  }
   for (const std::size_t rule : report.unused_rules) out << "unused rule: " << why_unused(assembly, rule) << '\n';
 }
 
@@ -110,6 +142,10 @@ std::string json_text(const Assembly& assembly, const AssemblyReport& report) {
   }
   Json pairs = Json::array();
   for (const AssemblyPair& pair : report.pairs) pairs.push_back(to_json(assembly, pair));
+  Json left_out = Json::array();
+  for (const auto& [a, b] : assembly.left_out) {
+    left_out.push_back(Json::array({assembly.parts[a].name, assembly.parts[b].name}));
+  }
   Json unused = Json::array();
   for (const std::size_t rule : report.unused_rules) unused.push_back(why_unused(assembly, rule));
   const Json object = {{"unit", assembly.unit.empty() ? Json() : Json(assembly.unit)},
@@ -121,6 +157,7 @@ std::string json_text(const Assembly& assembly, const AssemblyReport& report) {
                        {"faces_left_out", assembly.faces_left_out},
                        {"parts", parts},
                        {"pairs", pairs},
+                       {"left_out", left_out},
                        {"unused_rules", unused},
                        {"notes", report.notes}};
   return object.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
@@ -185,7 +222,7 @@ void write_file(const std::string& path, const std::string& text) {
 int run_clash(const ClashOptions& options, const Streams& streams) {
   const bool json_out = options.json == "-";
   sim::check_outputs(
-      {{"ASSEMBLY", options.assembly}, {"--rules", options.rules}},
+      {{"ASSEMBLY", options.assembly}, {"--rules", options.rules}, {"--srdf", options.srdf}},
       {{"--json", json_out ? "" : options.json}, {"--junit", options.junit}, {"--accept", options.accept}});
   for (const std::string& path : {json_out ? std::string() : options.json, options.junit, options.accept}) {
     if (!path.empty()) sim::check_writable(path);

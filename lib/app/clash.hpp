@@ -11,15 +11,19 @@
 namespace cchip::app {
 
 struct ClashOptions {
-  std::string assembly;   ///< TOML file, folder or OBJ
-  std::string rules;      ///< a file with more rules; empty: none
-  std::string json;       ///< the report; "-": standard output, in place of the table; empty: none
-  std::string junit;      ///< the report as JUnit XML; empty: none
-  std::string accept;     ///< rules that accept what parts do now; empty: none
-  std::string unit;       ///< of the assembly, in place of the file's; empty: that
-  std::string clearance;  ///< in place of the file's; empty: that
-  unsigned threads = 0;   ///< 0: as many as there are cores
-  bool lenient = false;   ///< faces that cannot be used are left out
+  std::string assembly;     ///< TOML file, folder, OBJ, glTF, GLB, 3MF or URDF
+  std::string rules;        ///< a file with more rules; empty: none
+  std::string json;         ///< the report; "-": standard output, in place of the table; empty: none
+  std::string junit;        ///< the report as JUnit XML; empty: none
+  std::string accept;       ///< rules that accept what parts do now; empty: none
+  std::string unit;         ///< of the assembly, in place of the file's; empty: that
+  std::string clearance;    ///< in place of the file's; empty: that
+  std::string joints;       ///< "name=value,...": of a robot; empty: as near 0 as they may be
+  std::string packages;     ///< as AssemblyLoadOptions::packages
+  std::string srdf;         ///< as AssemblyLoadOptions::srdf
+  bool neighbours = false;  ///< as AssemblyLoadOptions::neighbours
+  unsigned threads = 0;     ///< 0: as many as there are cores
+  bool lenient = false;     ///< faces that cannot be used are left out
 };
 
 /// Runs it and returns the exit code.

@@ -178,9 +178,9 @@ Run add_clash(CLI::App& app) {
   ClashOptions& options = *held;
   CLI::App* command = app.add_subcommand(
       "clash", "Is an assembly all right? Parts, poses and rules in; what overlaps, touches or is too near out");
-  add_text(
-      *command, "ASSEMBLY", options.assembly,
-      "TOML file with parts and rules; or a folder of mesh files, an OBJ with a part for each 'o', glTF, GLB or 3MF")
+  add_text(*command, "ASSEMBLY", options.assembly,
+           "TOML file with parts and rules; or a folder of mesh files, an OBJ with a part for each 'o', glTF, GLB, 3MF "
+           "or URDF")
       ->required();
   add_text(*command, "--rules", options.rules, "TOML file with more rules, which come last");
   add_text(*command, "--json", options.json, "write the report; - writes it to standard output in place of the table");
@@ -190,6 +190,12 @@ Run add_clash(CLI::App& app) {
   add_text(*command, "--unit", options.unit, "um, mm, cm, m, in or ft: that of the assembly's numbers");
   add_text(*command, "--clearance", options.clearance,
            "parts without a rule must be this far apart (default: what ASSEMBLY says, or 0: they must not touch)");
+  add_text(*command, "--joints", options.joints,
+           "name=value,name=value: joints of a URDF, radians or metres (default: as near 0 as their limits allow)");
+  add_text(*command, "--packages", options.packages,
+           "folder of the packages of package:// (default: the folders above the URDF)");
+  add_text(*command, "--srdf", options.srdf, "SRDF file; pairs that its disable_collisions name may do anything");
+  command->add_flag("--neighbours", options.neighbours, "look at links that a joint joins, too");
   add_whole(*command, "--threads", options.threads, "threads (default 0: as many as there are cores)",
             WholeRange{0, 4096});
   command->add_flag("--lenient", options.lenient,
@@ -200,6 +206,7 @@ Run add_clash(CLI::App& app) {
       "Examples:\n"
       "  cchip clash assembly.toml\n"
       "  cchip clash assembly.toml --junit clash.xml\n"
+      "  cchip clash robot.urdf --joints shoulder=1.57,elbow=-0.5\n"
       "  cchip clash parts/ --unit mm --accept accepted.toml\n"
       "  cchip clash parts/ --unit mm --rules accepted.toml");
   return [held](const Streams& streams) { return run_clash(*held, streams); };

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cchip/internal/geometry/quarter_turns.hpp>
 #include <cchip/pose.hpp>
 #include <cchip/program/usage_error.hpp>
 #include <charconv>
@@ -22,23 +23,6 @@ const std::array<std::vector<const char*>, 5> rotation_columns = {
      {"rx", "ry", "rz"},
      {"roll", "pitch", "yaw"},
      {"qx", "qy", "qz", "qw"}}};
-/// What rounding leaves of a quarter turn.
-constexpr double near = 0x1p-48;
-
-/// Exactly the quarter turns that a rotation is within rounding of, or else the rotation.
-Eigen::Matrix3d snapped(const Eigen::Matrix3d& rotation) {
-  const Eigen::Matrix3d turns = rotation.array().round();
-  const bool is_near = (rotation - turns).cwiseAbs().maxCoeff() <= near;
-  return is_near && (turns * turns.transpose()).isIdentity(0) ? Eigen::Matrix3d(turns.array() + 0.0) : rotation;
-}
-
-double to_degrees(double radians) {
-  const double quarter = std::acos(0.0);
-  const double turns = std::round(radians / quarter);
-  if (std::abs(radians - turns * quarter) <= near * std::abs(radians)) return 90 * turns;
-  return radians * (180 / std::acos(-1.0));
-}
-
 /// Divided by the square of the length at the end: equal components give exact zeros and ones.
 Eigen::Matrix3d of_quaternion(Eigen::Vector4d q) {
   const double greatest = q.cwiseAbs().maxCoeff();

@@ -13,8 +13,10 @@
 #include <cchip/pose.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace cchip {
@@ -50,6 +52,33 @@ struct AssemblyRule {
 /// The name of the enumerator, such as "touching".
 const char* name_of(AssemblyRule::Kind kind);
 
+/// A body of a robot, a `link` of URDF.
+struct AssemblyLink {
+  std::string name;
+  std::optional<std::size_t> part;  ///< the part that it carries; none: it has no shape
+  Pose place = Pose::Identity();    ///< from the coordinates of the part's mesh to those of the link
+};
+
+/// What joins a link to the one that carries it.
+struct AssemblyJoint {
+  enum class Kind { fixed, revolute, continuous, prismatic, planar, floating };
+  std::string name;
+  Kind kind = Kind::fixed;
+  std::size_t parent = 0;          ///< numbers of links
+  std::size_t child = 0;           ///< in the joint's coordinates; not carried by any other joint
+  Pose origin = Pose::Identity();  ///< from the coordinates of the joint to those of the parent
+  Vec3d axis = Vec3d(1, 0, 0);     ///< of length 1 but for rounding, in the joint's coordinates
+  double lower = 0;                ///< of revolute and prismatic joints, in radians or units of the assembly
+  double upper = 0;
+  std::optional<std::size_t> leader =
+      std::nullopt;  ///< the joint it follows, which follows none: value = multiplier leader + offset
+  double multiplier = 1;
+  double offset = 0;
+  double value = 0;  ///< how far it is moved
+};
+/// The name of the enumerator, such as "revolute".
+const char* name_of(AssemblyJoint::Kind kind);
+
 /// Of the rules for a pair one counts: one that names both parts before one of two groups, that before one for all
 /// pairs; of several that are equally special the last. A pair without any must not touch, and is at least `clearance`
 /// apart.
@@ -57,9 +86,13 @@ struct Assembly {
   std::vector<AssemblyPart> parts;
   std::vector<AssemblyRule> rules;
   double clearance = 0;
-  std::string unit;                ///< um, mm, cm, m, in or ft; empty: not known
-  std::size_t faces_left_out = 0;  ///< with AssemblyLoadOptions::lenient
-  std::vector<std::string> notes;  ///< of the files: what was left out, a line each
+  std::string unit;                        ///< um, mm, cm, m, in or ft; empty: not known
+  std::size_t faces_left_out = 0;          ///< with AssemblyLoadOptions::lenient
+  std::vector<std::string> notes;          ///< of the files: what was left out, a line each
+  std::vector<AssemblyLink> links = {};    ///< of a robot, the root first; empty: it is none
+  std::vector<AssemblyJoint> joints = {};  ///< of a robot, each behind the one that carries its parent
+  /// Pairs a < b of parts that are not looked at unless a rule names both and wants more than Kind::anything.
+  std::vector<std::pair<std::size_t, std::size_t>> left_out = {};
 };
 
 struct AssemblyLoadOptions {
@@ -68,16 +101,30 @@ struct AssemblyLoadOptions {
   bool lenient = false;  ///< as LoadOptions::lenient
   /// As LoadOptions::most_unpacked_bytes; of glTF and 3MF the numbers of all meshes count.
   std::uint64_t most_unpacked_bytes = std::uint64_t{1} << 32;
+  // Of URDF:
+  std::map<std::string, double> joints =
+      {};  ///< values by name, radians or metres; others are as near 0 as they may be
+  std::string packages =
+      {};                 ///< a folder of packages, for package://; empty, and if it is not there: those above the file
+  std::string srdf = {};  ///< a file whose disable_collisions become rules Kind::anything; empty: none
+  bool neighbours = false;  ///< pairs of links that a joint joins are not left out
 };
 
 /// Reads an assembly: a TOML file by the schema of docs/cpp/clash.md; a folder, in which each mesh file is a part named
 /// as the file, in the coordinates of the assembly; an OBJ, in which each `o` is a part; a glTF or GLB, in which each
-/// node with triangles of the chosen scene is one, named by the path of nodes, in metres; or a 3MF, in which each mesh
-/// that its build places is one, in its unit. A name that is there already gets a number: "bolt", "bolt#2". Each mesh
-/// is read and built once.
-/// \throws std::runtime_error one line: file, line if it has one, what is wrong, what to do. Fewer than two parts and a
+/// node with triangles of the chosen scene is one, named by the path of nodes, in metres; a 3MF, in which each mesh
+/// that its build places is one, in its unit; or a URDF, in which each link with collision shapes is one, in metres. A
+/// name that is there already gets a number: "bolt", "bolt#2". Each mesh is read and built once. \throws
+/// std::runtime_error one line: file, line if it has one, what is wrong, what to do. Fewer than two parts and a
 ///         part without a face are errors, too.
 Assembly load_assembly(const std::string& path, const AssemblyLoadOptions& options = {});
+
+/// Moves the joints of a robot, and its parts with them. A joint that is not named keeps its value; one that follows
+/// another moves with it.
+/// \returns notes: joints that follow others beyond their own limits
+/// \throws std::invalid_argument no such joint; it follows another; it is planar or floating; a value is not finite or
+///         beyond its limits. Nothing is moved then.
+std::vector<std::string> move_joints(Assembly& assembly, const std::map<std::string, double>& values);
 
 /// The rules of a TOML file that has no parts.
 /// \throws std::runtime_error as load_assembly()

@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <atomic>
 #include <cchip/assembly.hpp>
 #include <cchip/cpu_device.hpp>
 #include <cchip/scene.hpp>
-#include <exception>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <stdexcept>
-#include <thread>
 #include <utility>
 
 #include "pair_judge.hpp"
 #include "rule_book.hpp"
+#include "run_all.hpp"
 #include "texts.hpp"
 
 namespace cchip {
@@ -48,35 +45,11 @@ std::vector<Numbers> pairs_to_judge(const Assembly& assembly, const RuleBook& ru
       return true;
     });
   }
-  return {pairs.begin(), pairs.end()};
-}
-
-/// Calls `run` for 0..count - 1 in several threads. Of several exceptions that of the least number is thrown.
-template <class Function>
-void run_all(std::size_t count, unsigned threads, const Function& run) {
-  std::atomic<std::size_t> next = 0;
-  std::mutex mutex;
-  std::size_t failed = count;
-  std::exception_ptr error;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < count; i = next++) {
-      try {
-        run(i);
-      } catch (...) {
-        const std::lock_guard<std::mutex> lock(mutex);
-        if (i < failed) {
-          failed = i;
-          error = std::current_exception();
-        }
-      }
-    }
-  };
-  if (threads == 0) threads = std::max(1U, std::thread::hardware_concurrency());
-  std::vector<std::thread> others;
-  for (std::size_t i = 1; i < std::min<std::size_t>(threads, count); ++i) others.emplace_back(work);
-  work();
-  for (std::thread& other : others) other.join();
-  if (error) std::rethrow_exception(error);
+  std::vector<Numbers> result;
+  for (const Numbers& pair : pairs) {
+    if (!rules.is_left_out(pair.first, pair.second)) result.push_back(pair);
+  }
+  return result;
 }
 
 /// Rules that allow something are used if a pair does it; others, if they count for a pair at all.
@@ -157,7 +130,7 @@ AssemblyReport check(const Assembly& assembly, const AssemblyCheckOptions& optio
   look_at_parts(assembly, report);
   const std::vector<Numbers> numbers = pairs_to_judge(assembly, rules, options.threads);
   std::vector<AssemblyPair> pairs(numbers.size());
-  run_all(numbers.size(), options.threads, [&](std::size_t i) {
+  assembly::run_all(numbers.size(), options.threads, [&](std::size_t i) {
     pairs[i] = assembly::judge_pair(assembly, rules, numbers[i].first, numbers[i].second, options.most_normals);
   });
   report.judged = pairs.size();

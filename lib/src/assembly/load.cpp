@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string_view>
@@ -16,6 +17,7 @@
 #include "mesh_io/other_formats.hpp"
 #include "obj_parts.hpp"
 #include "placed_meshes.hpp"
+#include "robot.hpp"
 #include "source.hpp"
 
 namespace cchip {
@@ -55,15 +57,18 @@ class Loader {
       load_folder(path);
     } else if (is_placed_meshes(path)) {
       load_placed(path);
+    } else if (mesh_io::extension_of(path) == ".urdf") {
+      load_urdf(path);
     } else if (mesh_io::extension_of(path) == ".toml") {
       load_toml(path);
     } else if (mesh_io::extension_of(mesh_io::name_inside(path)) == ".obj") {
       load_obj(path);
     } else {
       refuse(path,
-             "is no assembly; give a TOML file, a folder of mesh files, a glTF, GLB or 3MF, or an "
-             "OBJ with a part for each 'o'");
+             "is no assembly; give a TOML file, a folder of mesh files, a glTF, GLB or 3MF, a URDF, "
+             "or an OBJ with a part for each 'o'");
     }
+    if (assembly_.links.empty()) refuse_robot_options(path);
     if (assembly_.parts.size() < 2) {
       refuse(path, "holds one part, which cannot clash; give an assembly of at least two");
     }
@@ -74,6 +79,11 @@ class Loader {
  private:
   [[noreturn]] static void refuse(const std::string& path, const std::string& what) {
     throw std::runtime_error(path + ": " + what);
+  }
+
+  void refuse_robot_options(const std::string& path) const {
+    if (options_.joints.empty() && options_.srdf.empty() && options_.packages.empty() && !options_.neighbours) return;
+    refuse(path, "is no robot, so it has no joints, packages, SRDF or neighbours; leave these options out");
   }
 
   void add_rules(std::vector<AssemblyRule> rules) {
@@ -155,6 +165,91 @@ class Loader {
                 .first;
       }
       add_part(part.name, found->second, part.pose, {}, path);
+    }
+  }
+
+  void load_urdf(const std::string& path) {
+    const assembly::Robot robot = assembly::read_urdf(path, options_);
+    if (assembly_.unit.empty()) assembly_.unit = "m";
+    for (const std::string& note : robot.notes) assembly_.notes.push_back(path + ": " + note);
+    std::size_t without_shape = 0;
+    for (const assembly::RobotLink& link : robot.links) {
+      assembly_.links.push_back({link.name, std::nullopt, Pose::Identity()});
+      if (link.shapes.empty()) {
+        ++without_shape;
+      } else {
+        add_link_part(path, link);
+      }
+    }
+    if (without_shape > 0) {
+      assembly_.notes.push_back(path + ": " + std::to_string(without_shape) + " of " +
+                                std::to_string(robot.links.size()) + " links have no collision, so they are no parts");
+    }
+    assembly_.joints = robot.joints;
+    leave_neighbours_out();
+    if (!options_.srdf.empty()) add_disabled(assembly::read_srdf(options_.srdf, robot.links));
+    try {
+      for (const std::string& note : move_joints(assembly_, options_.joints)) {
+        assembly_.notes.push_back(path + ": " + note);
+      }
+    } catch (const std::invalid_argument& error) {
+      refuse(path, error.what());
+    }
+  }
+
+  /// A link of one shape is the mesh of that, and places it.
+  void add_link_part(const std::string& path, const assembly::RobotLink& link) {
+    const std::string who = path + ": link '" + link.name + "'";
+    std::vector<Object> objects;
+    for (const assembly::RobotShape& shape : link.shapes) {
+      try {
+        objects.push_back(shape.file.empty() ? build(shape.mesh, who) : object_of(shape.file));
+      } catch (const std::runtime_error& error) {
+        if (shape.file.empty()) throw;
+        refuse(who, error.what());
+      }
+    }
+    AssemblyLink& made = assembly_.links.back();
+    made.part = assembly_.parts.size();
+    if (objects.size() == 1) {
+      made.place = link.shapes[0].place;
+      add_part(link.name, objects[0], made.place, {}, link.shapes[0].file.empty() ? path : link.shapes[0].file);
+      return;
+    }
+    std::vector<const Mesh*> meshes;
+    std::vector<Pose> places;
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      meshes.push_back(&objects[i].mesh());
+      places.push_back(link.shapes[i].place);
+    }
+    add_part(link.name, build(assembly::joined(meshes, places), who), Pose::Identity(), {}, path);
+  }
+
+  void leave_neighbours_out() {
+    if (options_.neighbours) return;
+    for (const AssemblyJoint& joint : assembly_.joints) {
+      const std::optional<std::size_t> parent = assembly_.links[joint.parent].part;
+      const std::optional<std::size_t> child = assembly_.links[joint.child].part;
+      if (parent && child) assembly_.left_out.push_back(std::minmax(*parent, *child));
+    }
+    std::sort(assembly_.left_out.begin(), assembly_.left_out.end());
+  }
+
+  /// Rules of an SRDF about pairs that are looked at.
+  void add_disabled(std::vector<AssemblyRule> rules) {
+    const auto part_of = [this](const std::string& name) {
+      return std::find_if(assembly_.links.begin(), assembly_.links.end(),
+                          [&name](const AssemblyLink& link) { return link.name == name; })
+          ->part;
+    };
+    for (AssemblyRule& rule : rules) {
+      const std::optional<std::size_t> a = part_of(rule.parts[0]);
+      const std::optional<std::size_t> b = part_of(rule.parts[1]);
+      if (!a || !b) continue;
+      const std::pair<std::size_t, std::size_t> pair = std::minmax(*a, *b);
+      if (!std::binary_search(assembly_.left_out.begin(), assembly_.left_out.end(), pair)) {
+        assembly_.rules.push_back(std::move(rule));
+      }
     }
   }
 

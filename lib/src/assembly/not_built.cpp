@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "placed_meshes.hpp"
+#include "robot.hpp"
 
 namespace cchip::assembly {
 
@@ -19,6 +20,14 @@ PlacedMeshes read_3mf(const std::string& path, std::uint64_t) {
                            ": is 3MF, and this build of the library has no reader for it; build it with libzip "
                            "and pugixml (Debian's libzip-dev and libpugixml-dev)");
 }
+#endif
+#ifndef CCHIP_WITH_URDF
+Robot read_urdf(const std::string& path, const AssemblyLoadOptions&) {
+  throw std::runtime_error(path +
+                           ": is URDF, and this build of the library has no reader for it; build it with urdfdom "
+                           "and pugixml (Debian's liburdfdom-dev and libpugixml-dev)");
+}
+std::vector<AssemblyRule> read_srdf(const std::string&, const std::vector<RobotLink>&) { return {}; }
 #endif
 
 }  // namespace cchip::assembly

@@ -55,7 +55,8 @@ void check_rule(const AssemblyRule& rule, std::size_t number) {
 
 }  // namespace
 
-RuleBook::RuleBook(const Assembly& assembly) : assembly_(assembly) {
+RuleBook::RuleBook(const Assembly& assembly)
+    : assembly_(assembly), left_out_(assembly.left_out.begin(), assembly.left_out.end()) {
   if (!is_length(assembly.clearance)) {
     throw std::invalid_argument("the clearance is not finite or is below 0; give one that is at least 0");
   }
@@ -103,6 +104,12 @@ std::optional<std::size_t> RuleBook::rule_of(std::size_t a, std::size_t b) const
     if (is_in_order(rule, a, b) || is_in_order(rule, b, a)) return rule;
   }
   return of_all_;
+}
+
+bool RuleBook::is_left_out(std::size_t a, std::size_t b) const {
+  if (left_out_.count(std::minmax(a, b)) == 0) return false;
+  const auto named = of_parts_.find(std::minmax(a, b));
+  return named == of_parts_.end() || assembly_.rules[named->second].kind == Kind::anything;
 }
 
 double RuleBook::clearance_of(std::size_t a, std::size_t b) const {

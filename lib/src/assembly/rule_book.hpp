@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,8 @@ class RuleBook {
 
   /// The number of the rule that counts for two parts. Takes O(rules about groups) time.
   std::optional<std::size_t> rule_of(std::size_t a, std::size_t b) const;
+  /// Is a pair not to be looked at?
+  bool is_left_out(std::size_t a, std::size_t b) const;
   /// How far apart two parts must be at least.
   double clearance_of(std::size_t a, std::size_t b) const;
   /// All clearances above 0, ascending.
@@ -39,7 +42,8 @@ class RuleBook {
   const Assembly& assembly_;
   std::map<std::string, std::size_t> part_of_;
   std::map<std::pair<std::size_t, std::size_t>, std::size_t> of_parts_;  ///< the lower part first
-  std::vector<std::size_t> of_groups_;                                   ///< the last one first
+  std::set<std::pair<std::size_t, std::size_t>> left_out_;
+  std::vector<std::size_t> of_groups_;  ///< the last one first
   std::optional<std::size_t> of_all_;
 };
 
