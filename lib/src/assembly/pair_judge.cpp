@@ -211,8 +211,11 @@ bool is_accepted(const Assembly& assembly, const RuleBook& rules, const Assembly
 
 AssemblyPair judge_pair(const Assembly& assembly, const RuleBook& rules, std::size_t a, std::size_t b,
                         std::size_t most_normals) {
-  const AssemblyPart& part_a = assembly.parts[a];
-  const AssemblyPart& part_b = assembly.parts[b];
+  return judge_pair(assembly, rules, a, b, assembly.parts[a], assembly.parts[b], most_normals);
+}
+
+AssemblyPair judge_pair(const Assembly& assembly, const RuleBook& rules, std::size_t a, std::size_t b,
+                        const AssemblyPart& part_a, const AssemblyPart& part_b, std::size_t most_normals) {
   AssemblyPair pair;
   pair.a = a;
   pair.b = b;

@@ -15,6 +15,9 @@ namespace cchip::assembly {
 /// \throws as solids()
 AssemblyPair judge_pair(const Assembly& assembly, const RuleBook& rules, std::size_t a, std::size_t b,
                         std::size_t most_normals);
+/// The same with the parts elsewhere.
+AssemblyPair judge_pair(const Assembly& assembly, const RuleBook& rules, std::size_t a, std::size_t b,
+                        const AssemblyPart& part_a, const AssemblyPart& part_b, std::size_t most_normals);
 
 }  // namespace cchip::assembly
 
