@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cchip/assembly.hpp>
+#include <cchip/assembly_motion.hpp>
 #include <cchip/internal/geometry/decimal.hpp>
 #include <cchip/program/csv_reader.hpp>
 #include <cchip/program/output_file.hpp>
@@ -17,6 +17,8 @@
 #include <stdexcept>
 #include <string_view>
 #include <vector>
+
+#include "motion.hpp"
 
 namespace cchip::app {
 namespace {
@@ -163,30 +165,6 @@ std::string json_text(const Assembly& assembly, const AssemblyReport& report) {
   return object.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-/// Text in XML 1.0, in which control characters cannot be written at all.
-std::string xml_text(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
-    }
-  }
-  return result;
-}
-
 /// A test case for each pair that meets or is too near, and one for the assembly, so that it is never empty.
 std::string junit_text(const Assembly& assembly, const AssemblyReport& report, const std::string& path) {
   const std::string name = xml_text(std::filesystem::path(path).filename().string());
@@ -217,18 +195,73 @@ void write_file(const std::string& path, const std::string& text) {
   file.commit();
 }
 
+MotionReport judge_motion(const Assembly& assembly, const ClashOptions& options) {
+  MotionOptions motion_options;
+  motion_options.threads = options.threads;
+  if (!options.least_step.empty()) {
+    const std::optional<double> step = read_decimal(options.least_step);
+    if (!step) throw UsageError(fmt::format("--least-step: got '{}'; write a number such as 1e-4", options.least_step));
+    motion_options.least_step = *step;
+  }
+  try {
+    return check_motion(assembly, read_motion(options.path, assembly), motion_options);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(options.path + ": " + error.what());
+  }
+}
+
+int run_motion(const Assembly& assembly, const ClashOptions& options, const Streams& streams) {
+  const bool json_out = options.json == "-";
+  const MotionReport report = judge_motion(assembly, options);
+  for (const std::string& note : report.notes) streams.err << "cchip: " << note << '\n';
+  if (json_out) {
+    streams.out << app::json_text(assembly, report);
+  } else {
+    app::write_table(assembly, report, streams.out);
+    if (!options.json.empty()) write_file(options.json, app::json_text(assembly, report));
+  }
+  if (!options.junit.empty()) write_file(options.junit, app::junit_text(assembly, report, options.assembly));
+  (json_out ? streams.err : streams.out) << app::summary(assembly, report) << '\n';
+  if (report.violations > 0) return exit_violation;
+  return report.unproved > 0 || assembly.faces_left_out > 0 ? exit_left_out : exit_ok;
+}
+
 }  // namespace
+
+std::string xml_text(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
+    }
+  }
+  return result;
+}
 
 int run_clash(const ClashOptions& options, const Streams& streams) {
   const bool json_out = options.json == "-";
   sim::check_outputs(
-      {{"ASSEMBLY", options.assembly}, {"--rules", options.rules}, {"--srdf", options.srdf}},
+      {{"ASSEMBLY", options.assembly}, {"--rules", options.rules}, {"--srdf", options.srdf}, {"--path", options.path}},
       {{"--json", json_out ? "" : options.json}, {"--junit", options.junit}, {"--accept", options.accept}});
   for (const std::string& path : {json_out ? std::string() : options.json, options.junit, options.accept}) {
     if (!path.empty()) sim::check_writable(path);
   }
   const Assembly assembly = read_assembly(options);
   for (const std::string& note : assembly.notes) streams.err << "cchip: " << note << '\n';
+  if (!options.path.empty()) return run_motion(assembly, options, streams);
   const AssemblyReport report = judge(assembly, options);
   for (const std::string& note : report.notes) streams.err << "cchip: " << note << '\n';
   if (json_out) {

@@ -22,6 +22,8 @@ struct ClashOptions {
   std::string packages;     ///< as AssemblyLoadOptions::packages
   std::string srdf;         ///< as AssemblyLoadOptions::srdf
   bool neighbours = false;  ///< as AssemblyLoadOptions::neighbours
+  std::string path;         ///< CSV file of configurations; empty: none
+  std::string least_step;   ///< as MotionOptions::least_step; empty: its default
   unsigned threads = 0;     ///< 0: as many as there are cores
   bool lenient = false;     ///< faces that cannot be used are left out
 };

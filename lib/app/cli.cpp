@@ -185,8 +185,8 @@ Run add_clash(CLI::App& app) {
   add_text(*command, "--rules", options.rules, "TOML file with more rules, which come last");
   add_text(*command, "--json", options.json, "write the report; - writes it to standard output in place of the table");
   add_text(*command, "--junit", options.junit, "write the report as JUnit XML, a test case for each pair that meets");
-  add_text(*command, "--accept", options.accept,
-           "write rules that accept what parts do now, for --rules or the key rules of ASSEMBLY");
+  CLI::Option* accept = add_text(*command, "--accept", options.accept,
+                                 "write rules that accept what parts do now, for --rules or the key rules of ASSEMBLY");
   add_text(*command, "--unit", options.unit, "um, mm, cm, m, in or ft: that of the assembly's numbers");
   add_text(*command, "--clearance", options.clearance,
            "parts without a rule must be this far apart (default: what ASSEMBLY says, or 0: they must not touch)");
@@ -195,6 +195,14 @@ Run add_clash(CLI::App& app) {
   add_text(*command, "--packages", options.packages,
            "folder of the packages of package:// (default: the folders above the URDF)");
   add_text(*command, "--srdf", options.srdf, "SRDF file; pairs that its disable_collisions name may do anything");
+  CLI::Option* path = add_text(
+      *command, "--path", options.path,
+      "CSV file of configurations, a column for each joint (or part,tx,ty,tz and a rotation); judges the motion "
+      "from row to row");
+  add_text(*command, "--least-step", options.least_step,
+           "time between looks below which a motion is called unproved (default 1e-4 of a row)")
+      ->needs(path);
+  accept->excludes(path);
   command->add_flag("--neighbours", options.neighbours, "look at links that a joint joins, too");
   add_whole(*command, "--threads", options.threads, "threads (default 0: as many as there are cores)",
             WholeRange{0, 4096});
@@ -202,11 +210,12 @@ Run add_clash(CLI::App& app) {
                     "leave out faces that cannot be used, name them on standard error, and end with exit code 4");
   command->footer(
       "Exit codes: 0 all is as the rules want it, 1 violations (or an internal error, which standard error names),\n"
-      "2 wrong input or command line, 4 no violation, but faces left out or a pair that could not be judged.\n"
+      "2 wrong input or command line, 4 no violation, but faces left out, or a pair not judged or unproved.\n"
       "Examples:\n"
       "  cchip clash assembly.toml\n"
       "  cchip clash assembly.toml --junit clash.xml\n"
       "  cchip clash robot.urdf --joints shoulder=1.57,elbow=-0.5\n"
+      "  cchip clash robot.urdf --path path.csv --clearance 0.01\n"
       "  cchip clash parts/ --unit mm --accept accepted.toml\n"
       "  cchip clash parts/ --unit mm --rules accepted.toml");
   return [held](const Streams& streams) { return run_clash(*held, streams); };
