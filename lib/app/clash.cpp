@@ -104,10 +104,7 @@ void write_table(const Assembly& assembly, const AssemblyReport& report, std::os
     if (!pair.is_judged) out << "not judged: " << sentence(assembly, pair) << '\n';
     if (has_reason(assembly, pair)) out << "allowed: " << sentence(assembly, pair) << '\n';
   }
-  if (!assembly.left_out.empty()) {
-    out << "left out: " << assembly.left_out.size()
-        << " pairs of links that a joint joins; --neighbours looks at them\n";
-  }
+  out << left_out_line(assembly);
   for (const std::size_t rule : report.unused_rules) out << "unused rule: " << why_unused(assembly, rule) << '\n';
 }
 

@@ -131,6 +131,13 @@ AssemblyMotion read_motion(const std::string& path, const Assembly& assembly) {
   return motion;
 }
 
+std::string left_out_line(const Assembly& assembly) {
+  const std::size_t count = assembly.left_out.size();
+  if (count == 0) return "";
+  return fmt::format("left out: {} {} of links that a joint joins; --neighbours looks at them\n", count,
+                     count == 1 ? "pair" : "pairs");
+}
+
 void write_table(const Assembly& assembly, const MotionReport& report, std::ostream& out) {
   for (const MotionPair& pair : report.pairs) {
     if (pair.time) out << "violation: " << violation_text(assembly, pair) << '\n';
@@ -143,10 +150,7 @@ void write_table(const Assembly& assembly, const MotionReport& report, std::ostr
         << " apart" << (pair->unproved.empty() ? "" : " where proved") << "; found "
         << length(assembly, pair->clearance_upper) << '\n';
   }
-  if (!assembly.left_out.empty()) {
-    out << "left out: " << assembly.left_out.size()
-        << " pairs of links that a joint joins; --neighbours looks at them\n";
-  }
+  out << left_out_line(assembly);
 }
 
 std::string json_text(const Assembly& assembly, const MotionReport& report) {

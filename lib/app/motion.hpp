@@ -23,6 +23,9 @@ std::string junit_text(const Assembly& assembly, const MotionReport& report, con
 /// "parts=N pairs=N violations=N unproved=N looks=N"
 std::string summary(const Assembly& assembly, const MotionReport& report);
 
+/// How many pairs are left out; empty: none.
+std::string left_out_line(const Assembly& assembly);
+
 /// Text in XML 1.0, in which control characters cannot be written at all.
 std::string xml_text(const std::string& text);
 

@@ -55,8 +55,8 @@ const char* name_of(AssemblyRule::Kind kind);
 /// A body of a robot, a `link` of URDF.
 struct AssemblyLink {
   std::string name;
-  std::optional<std::size_t> part;  ///< the part that it carries; none: it has no shape
-  Pose place = Pose::Identity();    ///< from the coordinates of the part's mesh to those of the link
+  std::optional<std::size_t> part = std::nullopt;  ///< the part that it carries; none: it has no shape
+  Pose place = Pose::Identity();                   ///< from the coordinates of the part's mesh to those of the link
 };
 
 /// What joins a link to the one that carries it.

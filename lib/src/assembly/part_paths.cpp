@@ -53,10 +53,11 @@ std::vector<Vec3d> points_of(const Object& object, const Pose& pose) {
   return points;
 }
 
-double greatest_norm(const std::vector<Vec3d>& points) {
+/// A bound of the numbers that are added when vertices are posed, also if they cancel.
+double reach_of(const Object& object, const Pose& pose) {
   double greatest = 0;
-  for (const Vec3d& p : points) greatest = std::max(greatest, p.norm());
-  return greatest;
+  for (const Vec3d& v : object.mesh().vertices) greatest = std::max(greatest, v.norm());
+  return pose.linear().norm() * greatest + pose.translation().norm();
 }
 
 /// Joints that move.
@@ -141,7 +142,7 @@ class RobotPaths : public PartPaths {
   }
 
   double rounding(std::size_t part, const std::vector<std::size_t>& joints) const {
-    double reach = greatest_norm(points_of(assembly_.parts[part].object, place(part)));
+    double reach = reach_of(assembly_.parts[part].object, place(part));
     double errors = 1;
     for (const std::size_t i : joints) {
       const AssemblyJoint& joint = assembly_.joints[i];
@@ -286,7 +287,7 @@ class FreePaths : public PartPaths {
   /// \returns the rounding
   double add_speeds(std::size_t part, std::vector<double>& speeds) const {
     const std::vector<Vec3d> points = points_of(assembly_.parts[part].object, assembly_.parts[part].pose);
-    double reach = greatest_norm(points);
+    const double reach = reach_of(assembly_.parts[part].object, assembly_.parts[part].pose);
     if (!column_[part]) return pose_error * reach;
     const std::vector<Step>& column = columns_[*column_[part]];
     double farthest = 0;
