@@ -287,15 +287,8 @@ std::vector<std::string> list_commands(const CLI::App& app) {
   return names;
 }
 
-/// Commands that come with the simulated hardware.
-bool is_of_hardware(const std::string& word) {
-  return word == "demo" || word == "pairs" || word == "meshpairs" || word == "reconfig";
-}
-
 std::string no_such_command(const CLI::App& app, const std::string& word) {
-  if (is_of_hardware(word)) {
-    return word + ": this cchip is built without the simulated hardware; build it with CCHIP_SIMULATION=ON";
-  }
+  if (is_hardware_command(word)) return word + ": " + without_hardware;
   return fmt::format("{}: no such command;{} the commands are {}", word, did_you_mean(word, list_commands(app)),
                      command_names(app));
 }

@@ -132,11 +132,9 @@ std::unique_ptr<Device> open_named_device(const CollideOptions& options) {
   try {
     return open_device(options.device);
   } catch (const std::invalid_argument& error) {
-    const bool of_hardware = options.device == "sim" || options.device == "model";
-    throw UsageError(options.hardware == nullptr && of_hardware
-                         ? "--device " + options.device +
-                               ": this cchip is built without the simulated hardware; build it with CCHIP_SIMULATION=ON"
-                         : std::string("--device: ") + error.what());
+    const bool is_missing = options.hardware == nullptr && is_hardware_device(options.device);
+    throw UsageError(is_missing ? "--device " + options.device + ": " + without_hardware
+                                : std::string("--device: ") + error.what());
   }
 }
 

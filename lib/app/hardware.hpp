@@ -45,6 +45,11 @@ struct Hardware {
 /// Makes its devices known to open_device(), too. Null without it.
 const Hardware* hardware();
 
+/// What a cchip without the hardware refuses, and why. Of names that no cchip knows both are false.
+bool is_hardware_command(const std::string& name);
+bool is_hardware_device(const std::string& name);
+extern const char* const without_hardware;
+
 }  // namespace cchip::app
 
 #endif

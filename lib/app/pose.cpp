@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cchip/internal/geometry/quarter_turns.hpp>
+#include <cchip/internal/geometry/rotation.hpp>
 #include <cchip/pose.hpp>
 #include <cchip/program/usage_error.hpp>
 #include <charconv>
@@ -23,20 +24,6 @@ const std::array<std::vector<const char*>, 5> rotation_columns = {
      {"rx", "ry", "rz"},
      {"roll", "pitch", "yaw"},
      {"qx", "qy", "qz", "qw"}}};
-/// Divided by the square of the length at the end: equal components give exact zeros and ones.
-Eigen::Matrix3d of_quaternion(Eigen::Vector4d q) {
-  const double greatest = q.cwiseAbs().maxCoeff();
-  if (greatest == 0) throw std::invalid_argument("the quaternion is 0; write one that is not, of any length");
-  int exponent = 0;
-  std::frexp(greatest, &exponent);
-  for (double& part : q) part = std::ldexp(part, -exponent);  // no square over- or underflows
-  const double x = q[0], y = q[1], z = q[2], w = q[3];
-  Eigen::Matrix3d matrix;
-  matrix << w * w + x * x - (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),  //
-      2 * (x * y + w * z), w * w + y * y - (x * x + z * z), 2 * (y * z - w * x),        //
-      2 * (x * z - w * y), 2 * (y * z + w * x), w * w + z * z - (x * x + y * y);
-  return matrix / (x * x + y * y + z * z + w * w);
-}
 
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t");
@@ -196,13 +183,13 @@ PoseColumns::Row PoseColumns::parse(const CsvRow& row) const {
       result.pose.linear() =
           snapped(make_pose(Vec3d::Zero(), {to_degrees(n[0]), to_degrees(n[1]), to_degrees(n[2])}).linear());
       break;
-    case Rotation::quaternion:
-      try {
-        result.pose.linear() = snapped(of_quaternion({n[0], n[1], n[2], n[3]}));
-      } catch (const std::invalid_argument& error) {
-        throw row_error(file_, row.line, fmt::format("columns qx to qw: {}", error.what()));
+    case Rotation::quaternion: {
+      const std::optional<Eigen::Matrix3d> rotation = rotation_of({n[0], n[1], n[2], n[3]});
+      if (!rotation) {
+        throw row_error(file_, row.line, "columns qx to qw: the quaternion is 0; write one that is not, of any length");
       }
-      break;
+      result.pose.linear() = snapped(*rotation);
+    } break;
   }
   result.pose.translation() = Eigen::Map<const Vec3d>(n.data() + entry_.size() - 3);
   for (const std::size_t i : passed_) result.passed.push_back(row.fields[i]);

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cchip/distance.hpp>
 #include <cchip/internal/tree/support_tree.hpp>
+#include <cchip/shapes.hpp>
 #include <cmath>
 #include <functional>
 #include <iostream>
@@ -10,10 +11,13 @@
 
 #include "bvh_meshes.hpp"
 #include "distance_oracle.hpp"
+#include "exact/fine_filter.hpp"
 #include "exact/nearest_planes.hpp"
 #include "random_poses.hpp"
 #include "search/behind_plane.hpp"
 #include "search/frame_gap.hpp"
+#include "search/search.hpp"
+#include "search/simd_distance.hpp"
 
 using namespace cchip;
 using namespace cchip::testing;
@@ -52,6 +56,9 @@ Mesh mesh_of_one_face(std::mt19937_64& random, double size) {
   return mesh;
 }
 
+/// x in units of 2^-1200.
+BigInt in_units(double x) { return BigInt(Parts(x).mantissa) << (Parts(x).exponent + 1200); }
+
 /// Of any length, along an axis, a diagonal, or neither.
 Vec3d axis(std::mt19937_64& random) {
   return std::ldexp(1.0, static_cast<int>(random() % 5) * 40 - 80) * vector(random);
@@ -61,6 +68,10 @@ Vec3d axis(std::mt19937_64& random) {
 
 TEST_CASE("distance bounds: gaps along a frame and a line", "[lib][distance]") {
   std::mt19937_64 random(sim::seed_from_environment() + 60);
+  std::vector<simd::DistanceKernels> kernels;
+  for (const std::string& target : simd_targets()) kernels.push_back(simd::distance_kernels(target));
+  int tight_faces = 0;
+  int tight_slabs = 0;
   int tight = 0;
   int apart = 0;
   for (int i = 0; i < 6000; ++i) {
@@ -93,9 +104,39 @@ TEST_CASE("distance bounds: gaps along a frame and a line", "[lib][distance]") {
       CAPTURE(i, k, n.transpose(), by_lines, by_faces, on_line, root, sim::seed_from_environment());
       for (const double bound : {by_lines, by_faces, on_line}) REQUIRE(compare(square, bound, unit_bits) >= 0);
       tight += root > 0 && by_faces > root * (1 - 1e-9) ? 1 : 0;
+      simd::DistanceFrame single;
+      const double unit = frame.in_single(single);
+      for (const simd::DistanceKernels& kernel : kernels) {
+        simd::NodeGaps gaps;
+        simd::FaceGaps faces;
+        constexpr float any = 1e15F;
+        REQUIRE(kernel.nodes(single, &line_a, 1, &line_b, 1, any, gaps) == 1);
+        const double in_single = std::sqrt(static_cast<double>(gaps.square[0])) * unit;
+        const double by_slabs = frame.slab_gap(frame.slab_a(line_a, gaps.a[0]), frame.slab_b(line_b, gaps.b[0])) * unit;
+        REQUIRE(kernel.leaves(single, a.tree().vertices(line_a.ref().first()), line_a.ref(),
+                              b.tree().vertices(line_b.ref().first()), line_b.ref(), any, faces));
+        const double lower = faces.lower[0] * unit;
+        const double upper = faces.upper[0] * unit;
+        CAPTURE(in_single, by_slabs, lower, upper);
+        for (const double bound : {in_single, by_slabs, lower}) {
+          if (bound > 0) REQUIRE(compare(square, bound, unit_bits) >= 0);
+        }
+        if (upper < std::numeric_limits<double>::infinity()) REQUIRE(compare(square, upper, unit_bits) <= 0);
+        tight_faces += root > 0 && lower > 0.999 * root && upper < 1.001 * root ? 1 : 0;
+        tight_slabs += root > 0 && by_slabs > 0.9 * root ? 1 : 0;
+        // Beyond a limit, too, a lower bound stays one.
+        if (root > 0 && !kernel.leaves(single, a.tree().vertices(line_a.ref().first()), line_a.ref(),
+                                       b.tree().vertices(line_b.ref().first()), line_b.ref(),
+                                       static_cast<float>(0.5 * root / unit), faces)) {
+          REQUIRE(compare(square, faces.lower[0] * unit, unit_bits) >= 0);
+        }
+      }
     }
   }
-  std::cout << "apart=" << apart << " tight=" << tight << '\n';
+  std::cout << "apart=" << apart << " tight=" << tight << " tight_faces=" << tight_faces
+            << " tight_slabs=" << tight_slabs << '\n';
+  CHECK(tight_faces > 10000);
+  CHECK(tight_slabs > 1000);
   CHECK(apart > 3000);
   CHECK(tight > 1000);  // a bound that is never near the distance would prove little
 }
@@ -164,7 +205,6 @@ TEST_CASE("distance bounds: half spaces are exact", "[lib][distance]") {
   std::mt19937_64 random(sim::seed_from_environment() + 61);
   int on = 0;
   int beyond = 0;
-  const auto whole = [](double x) { return BigInt(Parts(x).mantissa) << (Parts(x).exponent + 1200); };
   for (int i = 0; i < 100000; ++i) {
     exact::Vec<exact::BigInt> normal;
     std::array<BigInt, 3> same;
@@ -183,10 +223,10 @@ TEST_CASE("distance bounds: half spaces are exact", "[lib][distance]") {
     BigInt height = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto at = static_cast<Eigen::Index>(k);
-      height += same[k] * (whole(v[at]) - whole(through[at]));
+      height += same[k] * (in_units(v[at]) - in_units(through[at]));
     }
     CAPTURE(i, v.transpose(), through.transpose(), sim::seed_from_environment());
-    REQUIRE(exact::HalfSpace(normal, through).contains(v) == (height <= 0));
+    REQUIRE(exact::HalfSpace(normal, {through, through, through}).contains(v) == (height <= 0));
     on += height == 0;
     beyond += height > 0;
   }
@@ -213,7 +253,8 @@ TEST_CASE("distance bounds: what lies behind the planes through the nearest poin
     const auto points = [&](const Primitive& p, const Pose& pose) { return posed_points(p, pose, unit_bits); };
     const IntSquare<BigInt> square = square_of_distance(points(a[0], pose_a), points(b[0], pose_b));
     if (square.over == 0) continue;
-    const exact::NearestPlanes planes(PosedDistances(pose_a, pose_b), a[0], b[0]);
+    const PosedDistances distances(pose_a, pose_b);
+    const exact::NearestPlanes planes(distances, a[0], b[0]);
     CAPTURE(i, sim::seed_from_environment());
     REQUIRE(compare(square, planes.bounds().lower, unit_bits) >= 0);
     REQUIRE(compare(square, planes.bounds().upper, unit_bits) <= 0);
@@ -231,6 +272,86 @@ TEST_CASE("distance bounds: what lies behind the planes through the nearest poin
   CHECK(equal > 20);
 }
 
+TEST_CASE("distance bounds: sums of two doubles know their sign", "[lib][distance]") {
+  std::mt19937_64 random(sim::seed_from_environment() + 66);
+  int known = 0;
+  int close = 0;
+  int zero = 0;
+  constexpr int count = 20000;
+  for (int i = 0; i < count; ++i) {
+    // Volumes of four points of which one lies in the plane of the others, but for rounding.
+    std::array<Vec3d, 4> p = {vector(random), vector(random), vector(random), vector(random)};
+    if (i % 2 == 0) p[3] = p[0] + 0.25 * (p[1] - p[0]) + 0.5 * (p[2] - p[0]);
+    if (i % 20 == 0) {
+      for (Vec3d& v : p) v = v.array().round();
+    }
+    for (Vec3d& v : p) v = (v.array().abs() < 0x1p-100).select(0.0, v);  // so that the scale loses nothing
+    const double scale = std::ldexp(1.0, static_cast<int>(random() % 400) - 200);
+    exact::Vec<exact::FineFilter> fine[3];
+    exact::Vec<BigInt> whole_numbers[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto at = static_cast<Eigen::Index>(axis);
+        fine[k][axis] = exact::FineFilter(scale * p[k + 1][at]) - exact::FineFilter(scale * p[0][at]);
+        whole_numbers[k][axis] = in_units(p[k + 1][at]) - in_units(p[0][at]);
+      }
+    }
+    using exact::cross;
+    using exact::dot;
+    const exact::FineFilter volume = dot(fine[0], cross(fine[1], fine[2]));
+    const BigInt right = dot(whole_numbers[0], cross(whole_numbers[1], whole_numbers[2]));
+    CAPTURE(i, sim::seed_from_environment());
+    close += right != 0 && i % 2 == 0;
+    zero += right == 0;
+    if (!volume.is_known()) continue;
+    ++known;
+    REQUIRE(volume.sign() == right.sign());
+  }
+  std::cout << "known=" << known << " of " << count << " close=" << close << " zero=" << zero << '\n';
+  CHECK(known > count * 99 / 100 - zero);
+  CHECK(close > 1000);
+}
+
+TEST_CASE("distance bounds: slabs hold what lies below", "[lib][distance]") {
+  std::mt19937_64 random(sim::seed_from_environment() + 67);
+  for (int i = 0; i < 6; ++i) {
+    Mesh mesh = make_sphere(1, 2 + 2 * i);
+    for (Vec3d& v : mesh.vertices) v = v + 0.1 * vector(random) + Vec3d(1e3, 0, 0);
+    const Object object(mesh);
+    const bvh::SupportTree& tree = object.tree();
+    std::size_t slabs = 0;
+    const std::function<void(bvh::NodeRef, const std::function<void(const Vec3d&)>&)> visit =
+        [&](bvh::NodeRef node, const std::function<void(const Vec3d&)>& take) {
+          for (std::uint32_t k = node.first(); k < node.first() + node.count(); ++k) {
+            if (!node.is_leaf()) {
+              visit(tree.lines()[k].ref(), take);
+              continue;
+            }
+            const Primitive face = mesh.primitive(tree.faces()[k]);
+            for (std::size_t corner = 0; corner < face.vertex_count(); ++corner) take(face.v[corner]);
+          }
+        };
+    for (std::size_t n = 0; n < tree.size(); ++n) {
+      bvh::Slab slab;
+      if (!bvh::slab_of(tree.lines()[n], slab)) continue;
+      ++slabs;
+      double most = -1e9;
+      double least = 1e9;
+      visit(tree.lines()[n].ref(), [&](const Vec3d& v) {
+        const double height = slab.normal.dot(v - tree.centre()) / tree.unit();
+        most = std::max(most, height);
+        least = std::min(least, height);
+      });
+      CAPTURE(i, n, most, least, slab.along, slab.against);
+      REQUIRE(most <= slab.along);
+      REQUIRE(-least <= slab.against);
+      CHECK(slab.along - most < 2.1);
+      CHECK(slab.against + least < 2.1);
+    }
+    CHECK(slabs > tree.size() / 2);
+  }
+}
+
 TEST_CASE("distance bounds: nodes behind a plane", "[lib][distance]") {
   std::mt19937_64 random(sim::seed_from_environment() + 63);
   Mesh mesh;
@@ -246,7 +367,7 @@ TEST_CASE("distance bounds: nodes behind a plane", "[lib][distance]") {
     exact::Vec<exact::BigInt> normal;
     for (exact::BigInt& x : normal) x = static_cast<std::int64_t>(random() % 9) - 4;
     const Vec3d through = random() % 2 == 0 ? mesh.vertices[random() % mesh.vertices.size()] : vector(random);
-    const exact::HalfSpace space(normal, through);
+    const exact::HalfSpace space(normal, {through, through, through});
     BehindPlane behind(side, space);
     // All nodes: whether all faces below them are inside.
     const std::function<bool(bvh::NodeRef)> check = [&](bvh::NodeRef node) {

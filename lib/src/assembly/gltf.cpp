@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <cchip/internal/geometry/rotation.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -9,7 +10,6 @@
 
 #include "gltf_file.hpp"
 #include "placed_meshes.hpp"
-#include "rotation.hpp"
 
 namespace cchip::assembly {
 namespace {

@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cchip/internal/geometry/rotation.hpp>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -13,7 +14,6 @@
 #include <vector>
 
 #include "mesh_io/file_content.hpp"
-#include "rotation.hpp"
 #include "source.hpp"
 
 namespace cchip::assembly {

@@ -4,6 +4,7 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <cchip/internal/geometry/quarter_turns.hpp>
+#include <cchip/internal/geometry/rotation.hpp>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -20,7 +21,6 @@
 #include "mesh_io/file_content.hpp"
 #include "placed_meshes.hpp"
 #include "robot.hpp"
-#include "rotation.hpp"
 #include "texts.hpp"
 
 namespace cchip::assembly {

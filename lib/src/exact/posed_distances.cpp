@@ -3,10 +3,12 @@
 #include <cchip/internal/exact/posed_distances.hpp>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "feature_pairs.hpp"
+#include "fine_filter.hpp"
 #include "nearest_planes.hpp"
 #include "posed_filter.hpp"
 #include "scaled_points.hpp"
@@ -15,11 +17,15 @@ namespace cchip {
 namespace {
 
 using exact::BigInt;
+using exact::cross;
+using exact::dot;
 using exact::FeaturePair;
 using exact::Filter;
+using exact::FineFilter;
 using exact::greatest_component;
 using exact::Known;
 using exact::Vec;
+using exact::operator-;
 
 constexpr double unit = std::numeric_limits<double>::epsilon() / 2;  // greatest relative error of one operation
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -226,6 +232,30 @@ void root_of(const Fraction& square, DistanceBounds& result) {
   result.upper = std::nextafter(result.lower, infinity);
 }
 
+/// A multiple, with a positive factor, of the vector from the nearest point of A's feature to that of B's.
+template <class Num>
+Vec<Num> between_features(const std::array<Vec<Num>, 4>& a, const std::array<Vec<Num>, 4>& b, FeaturePair pair) {
+  const exact::Feature& f = exact::features[pair.a];
+  const exact::Feature& g = exact::features[pair.b];
+  const Vec<Num> between = b[g.at[0]] - a[f.at[0]];
+  if (f.count == 1 && g.count == 1) return between;
+  if (f.count + g.count == 3) {  // what is left of it across the edge
+    const Vec<Num> edge = f.count == 2 ? a[f.at[1]] - a[f.at[0]] : b[g.at[1]] - b[g.at[0]];
+    const Num square = dot(edge, edge);
+    const Num along = dot(edge, between);
+    Vec<Num> across;
+    for (std::size_t k = 0; k < 3; ++k) across[k] = between[k] * square - edge[k] * along;
+    return across;
+  }
+  Vec<Num> normal = f.count == 3   ? cross(a[f.at[1]] - a[f.at[0]], a[f.at[2]] - a[f.at[0]])
+                    : g.count == 3 ? cross(b[g.at[1]] - b[g.at[0]], b[g.at[2]] - b[g.at[0]])
+                                   : cross(a[f.at[1]] - a[f.at[0]], b[g.at[1]] - b[g.at[0]]);
+  if (dot(normal, between).sign() < 0) {
+    for (Num& x : normal) x = -x;
+  }
+  return normal;
+}
+
 /// Pairs of features that may be nearer than d, in doubles with error bounds.
 struct OpenPairs {
   bool certain = false;  ///< one is
@@ -292,6 +322,65 @@ class PosedDistances::Pair {
       return !open.certain || keep_certain;
     });
     return open;
+  }
+
+  /// The distance, or the doubles beside it, by the features that are nearest up to rounding, in sums of two doubles.
+  struct Fine {
+    DistanceBounds bounds;
+    Vec<FineFilter> normal;  ///< from A to B
+  };
+  /// \returns nothing if they cannot tell
+  std::optional<Fine> fine() const {
+    if (!r_.moderate) return std::nullopt;
+    const Vec3d& from = poses_.pose_b_.translation();
+    const Vec3d& to = poses_.pose_a_.translation();
+    Vec<FineFilter> offset;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto i = static_cast<Eigen::Index>(k);
+      offset[k] = FineFilter(to[i]) - FineFilter(from[i]);
+    }
+    const auto a = exact::filter_points(a_, poses_.pose_a_.linear(), offset);
+    const auto b = exact::filter_points(b_, poses_.pose_b_.linear(), Vec<FineFilter>{});
+    const exact::SquareOfPair<FineFilter> square = exact::square_of(a, b, near_.pair);
+    for (std::size_t k = 0; k < square.inside_count; ++k) {
+      if (square.inside[k].sign() <= 0) return std::nullopt;
+    }
+    // All vertices but the features' own lie behind the planes through the nearest points.
+    const Vec<FineFilter> normal = between_features(a, b, near_.pair);
+    const auto is_behind = [&normal](const std::array<Vec<FineFilter>, 4>& v, std::size_t count,
+                                     const exact::Feature& feature, int sign) {
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto* const end = feature.at.begin() + feature.count;
+        if (std::find(feature.at.begin(), end, i) != end) continue;
+        const FineFilter height = exact::dot(normal, v[i] - v[feature.at[0]]);
+        if (!height.is_known() || height.sign() == -sign) return false;
+      }
+      return true;
+    };
+    if (!is_behind(a, r_.count_a, exact::features[near_.pair.a], -1) ||
+        !is_behind(b, r_.count_b, exact::features[near_.pair.b], 1)) {
+      return std::nullopt;
+    }
+    // The greatest double whose square is not more, and the next one if it is less.
+    const auto excess = [&square](double x) { return square.over - FineFilter(x) * FineFilter(x) * square.under; };
+    DistanceBounds result = bounds();
+    result.lower = std::sqrt(square.over.value() / square.under.value());
+    if (!(result.lower > 0x1p-400 && result.lower < 0x1p400)) return std::nullopt;
+    for (int step = 0; step < 3; ++step) {
+      const FineFilter here = excess(result.lower);
+      if (!here.is_known()) break;
+      result.upper = here.sign() == 0 ? result.lower : std::nextafter(result.lower, infinity);
+      if (here.sign() == 0) return Fine{result, normal};
+      if (here.sign() < 0) {
+        result.lower = std::nextafter(result.lower, 0.0);
+        continue;
+      }
+      const FineFilter next = excess(result.upper);
+      if (!next.is_known()) break;
+      if (next.sign() < 0) return Fine{result, normal};
+      result.lower = result.upper;
+    }
+    return std::nullopt;
   }
 
   /// The vertices as integers in units of 2^exponent(), which is at most `exponent`.
@@ -362,30 +451,6 @@ DistanceBounds PosedDistances::tight_bounds(const Primitive& a, const Primitive&
 namespace exact {
 namespace {
 
-/// A multiple, with a positive factor, of the vector from the nearest point of A's feature to that of B's.
-Vec<BigInt> between_features(const std::array<Vec<BigInt>, 4>& a, const std::array<Vec<BigInt>, 4>& b,
-                             FeaturePair pair) {
-  const Feature& f = features[pair.a];
-  const Feature& g = features[pair.b];
-  const Vec<BigInt> between = b[g.at[0]] - a[f.at[0]];
-  if (f.count == 1 && g.count == 1) return between;
-  if (f.count + g.count == 3) {  // what is left of it across the edge
-    const Vec<BigInt> edge = f.count == 2 ? a[f.at[1]] - a[f.at[0]] : b[g.at[1]] - b[g.at[0]];
-    const BigInt square = dot(edge, edge);
-    const BigInt along = dot(edge, between);
-    Vec<BigInt> across;
-    for (std::size_t k = 0; k < 3; ++k) across[k] = between[k] * square - edge[k] * along;
-    return across;
-  }
-  Vec<BigInt> normal = f.count == 3   ? cross(a[f.at[1]] - a[f.at[0]], a[f.at[2]] - a[f.at[0]])
-                       : g.count == 3 ? cross(b[g.at[1]] - b[g.at[0]], b[g.at[2]] - b[g.at[0]])
-                                      : cross(a[f.at[1]] - a[f.at[0]], b[g.at[1]] - b[g.at[0]]);
-  if (dot(normal, between).sign() < 0) {
-    for (BigInt& x : normal) x = -x;
-  }
-  return normal;
-}
-
 /// factor * the transpose of the linear part times n, in any unit.
 Vec<BigInt> in_frame(const Eigen::Matrix3d& linear, const Vec<BigInt>& n, int factor) {
   int least = std::numeric_limits<int>::max();
@@ -403,45 +468,80 @@ Vec<BigInt> in_frame(const Eigen::Matrix3d& linear, const Vec<BigInt>& n, int fa
 }
 
 /// x / 2^exponent, |x| at most that.
-Filter filter_of(const BigInt& x, int exponent) {
-  if (x == 0) return {};
-  const BigInt size = abs(x);
-  const int top = static_cast<int>(boost::multiprecision::msb(size));
-  const int drop = std::max(0, top - 63);
-  const auto bits = static_cast<std::uint64_t>(size >> drop);
-  const double value = std::ldexp(static_cast<double>(bits), drop - exponent);
-  constexpr int digits = std::numeric_limits<double>::digits;
-  const bool is_exact =
-      top - static_cast<int>(boost::multiprecision::lsb(size)) < digits && drop + 63 - exponent > -900;
-  return {x.sign() < 0 ? -value : value, is_exact ? 0 : value * 0x1p-51 + 0x1p-1070};
+FineFilter fine_filter_of(BigInt x, int exponent) {
+  FineFilter sum;
+  for (int part = 0; part < 3 && x != 0; ++part) {  // 2^-105 of the greatest is left
+    const int drop = std::max(0, static_cast<int>(boost::multiprecision::msb(abs(x))) - 52);
+    if (drop - exponent < -1000) break;
+    const BigInt top = (abs(x) >> drop) * x.sign();
+    const double value = std::ldexp(static_cast<double>(static_cast<std::int64_t>(top)), drop - exponent);
+    sum += FineFilter(value);
+    x -= BigInt(top << drop);
+  }
+  return x == 0 ? sum : FineFilter(sum, std::abs(sum.value()) * 0x1p-104 + 0x1p-900);
 }
 
-}  // namespace
+/// The transpose of the linear part times n.
+Vec<FineFilter> in_frame(const Eigen::Matrix3d& linear, const Vec<FineFilter>& n) {
+  Vec<FineFilter> m;
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      m[k] += n[i] * FineFilter(linear(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)));
+    }
+  }
+  return m;
+}
 
-HalfSpace::HalfSpace(const Vec<BigInt>& normal, const Vec3d& through) : exact_(normal), through_(through) {
+Vec<FineFilter> fine_filters_of(const Vec<BigInt>& normal) {
   int exponent = 0;
   for (const BigInt& x : normal) {
     if (x != 0) exponent = std::max(exponent, static_cast<int>(boost::multiprecision::msb(abs(x))) + 1);
   }
-  for (std::size_t k = 0; k < 3; ++k) {
-    normal_[k] = filter_of(normal[k], exponent);
-    rounded_[static_cast<Eigen::Index>(k)] = normal_[k].value();
-  }
+  return {fine_filter_of(normal[0], exponent), fine_filter_of(normal[1], exponent),
+          fine_filter_of(normal[2], exponent)};
+}
+
+std::array<Vec3d, 3> points_of(const Primitive& p, const Feature& feature) {
+  return {p.v[feature.at[0]], p.v[feature.at[feature.count > 1 ? 1 : 0]], p.v[feature.at[feature.count > 2 ? 2 : 0]]};
+}
+
+}  // namespace
+
+HalfSpace::HalfSpace(const Vec<FineFilter>& normal, const std::array<Vec3d, 3>& on_plane,
+                     std::function<Vec<BigInt>()> exact)
+    : normal_(normal), on_plane_(on_plane), make_exact_(std::move(exact)) {
+  for (std::size_t k = 0; k < 3; ++k) rounded_[static_cast<Eigen::Index>(k)] = normal[k].value();
+  const double greatest = rounded_.cwiseAbs().maxCoeff();
+  if (greatest > 0 && greatest < infinity) rounded_ *= std::ldexp(1.0, -std::ilogb(greatest) - 1);
+  for (std::size_t k = 0; k < 3; ++k) is_zero_[k] = normal[k].is_known() && normal[k].sign() == 0;
+}
+
+HalfSpace::HalfSpace(const Vec<BigInt>& normal, const std::array<Vec3d, 3>& on_plane)
+    : HalfSpace(fine_filters_of(normal), on_plane, nullptr) {
+  exact_ = normal;
 }
 
 bool HalfSpace::contains(const Vec3d& v) const {
-  if (v == through_) return true;
-  Filter height;
+  // Along the plane from a point of it, in exact numbers.
+  for (const Vec3d& p : on_plane_) {
+    if ((v.x() == p.x() || is_zero_[0]) && (v.y() == p.y() || is_zero_[1]) && (v.z() == p.z() || is_zero_[2])) {
+      return true;
+    }
+  }
+  // Components of the normal and differences are off by 2^-50 of themselves and by what underflows, products and sums
+  // by a few 2^-53.
+  const Vec3d between = v - through();
+  const double rounded = rounded_.dot(between);
+  if (std::abs(rounded) > 0x1p-47 * between.cwiseAbs().sum() + 0x1p-1000) return rounded < 0;
+  FineFilter height;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto i = static_cast<Eigen::Index>(k);
-    if (rounded_[i] == 0 && exact_[k] == 0) continue;
-    height += normal_[k] * (Filter(v[i]) - Filter(through_[i]));
+    height += normal_[k] * (FineFilter(v[i]) - FineFilter(through()[i]));
   }
-  bool open = false;
-  const int sign = sign_if_known(height, open);
-  if (!open) return sign <= 0;
+  if (height.is_known()) return height.sign() <= 0;
+  if (!exact_) exact_ = make_exact_();
   int least = std::numeric_limits<int>::max();
-  for (const double x : {v[0], v[1], v[2], through_[0], through_[1], through_[2]}) {
+  for (const double x : {v[0], v[1], v[2], through()[0], through()[1], through()[2]}) {
     if (x != 0) least = std::min(least, Scaled(x).exponent);
   }
   const auto whole = [least](double x) {
@@ -451,7 +551,7 @@ bool HalfSpace::contains(const Vec3d& v) const {
   BigInt exact = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto i = static_cast<Eigen::Index>(k);
-    exact += exact_[k] * (whole(v[i]) - whole(through_[i]));
+    exact += (*exact_)[k] * (whole(v[i]) - whole(through()[i]));
   }
   return exact.sign() <= 0;
 }
@@ -465,12 +565,32 @@ bool HalfSpace::contains(const Primitive& p) const {
 
 NearestPlanes::NearestPlanes(const PosedDistances& distances, const Primitive& a, const Primitive& b) {
   const PosedDistances::Pair pair(distances, a, b);
+  const std::optional<PosedDistances::Pair::Fine> fine = pair.fine();
+  if (!fine) {
+    make_exactly(distances, a, b);
+    return;
+  }
+  bounds_ = fine->bounds;
+  const FeaturePair features_of_both = pair.features();
+  const auto exact = [&distances, a, b, features_of_both](const Pose& pose, int sign) {
+    const PosedDistances::Pair::Integers integers = PosedDistances::Pair(distances, a, b).integers(0);
+    return in_frame(pose.linear(), between_features(integers.a, integers.b, features_of_both), sign);
+  };
+  a_ = HalfSpace(in_frame(distances.pose_a_.linear(), fine->normal), points_of(a, features[features_of_both.a]),
+                 [&distances, exact] { return exact(distances.pose_a_, 1); });
+  const Vec<FineFilter> back = {-fine->normal[0], -fine->normal[1], -fine->normal[2]};
+  b_ = HalfSpace(in_frame(distances.pose_b_.linear(), back), points_of(b, features[features_of_both.b]),
+                 [&distances, exact] { return exact(distances.pose_b_, -1); });
+}
+
+void NearestPlanes::make_exactly(const PosedDistances& distances, const Primitive& a, const Primitive& b) {
+  const PosedDistances::Pair pair(distances, a, b);
   bounds_ = pair.bounds();
   const PosedDistances::Pair::Integers integers = pair.integers(0);
   const auto make_planes = [&](FeaturePair features_of_both) {
-    const Vec<BigInt> normal = between_features(integers.a, integers.b, features_of_both);
-    a_ = HalfSpace(in_frame(distances.pose_a_.linear(), normal, 1), a.v[features[features_of_both.a].at[0]]);
-    b_ = HalfSpace(in_frame(distances.pose_b_.linear(), normal, -1), b.v[features[features_of_both.b].at[0]]);
+    const Vec<BigInt> between = between_features(integers.a, integers.b, features_of_both);
+    a_ = HalfSpace(in_frame(distances.pose_a_.linear(), between, 1), points_of(a, features[features_of_both.a]));
+    b_ = HalfSpace(in_frame(distances.pose_b_.linear(), between, -1), points_of(b, features[features_of_both.b]));
   };
   const auto square_if_inside = [&](FeaturePair features_of_both, Fraction& square) {
     const SquareOfPair<BigInt> s = square_of(integers.a, integers.b, features_of_both);

@@ -46,9 +46,10 @@ struct Offset {
 };
 
 /// The vertices under a map, each with a bound on its error.
-inline std::array<Vec<Filter>, 4> filter_points(const Primitive& p, const Eigen::Matrix3d& linear,
-                                                const Vec<Filter>& offset) {
-  std::array<Vec<Filter>, 4> points;
+/// \tparam Number Filter or FineFilter
+template <class Number>
+std::array<Vec<Number>, 4> filter_points(const Primitive& p, const Eigen::Matrix3d& linear, const Vec<Number>& offset) {
+  std::array<Vec<Number>, 4> points;
   for (std::size_t i = 0; i < p.vertex_count(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
       // Most poses of assemblies have zeros and ones, which spare a product.
@@ -56,7 +57,7 @@ inline std::array<Vec<Filter>, 4> filter_points(const Primitive& p, const Eigen:
       for (Eigen::Index c = 0; c < 3; ++c) {
         const double entry = linear(static_cast<Eigen::Index>(k), c);
         if (entry == 0) continue;
-        points[i][k] += entry == 1 ? Filter(p.v[i][c]) : Filter(entry) * Filter(p.v[i][c]);
+        points[i][k] += entry == 1 ? Number(p.v[i][c]) : Number(entry) * Number(p.v[i][c]);
       }
     }
   }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "behind_plane.hpp"
 
+#include <algorithm>
+#include <vector>
+
 #include "exact/ieee.hpp"
 
 namespace cchip {
@@ -20,6 +23,13 @@ BehindPlane::BehindPlane(const TreeSide& side, const exact::HalfSpace& space)
 
 bool BehindPlane::contains_line(const bvh::SupportLine& line) {
   return reach_.along(line) < limit_ || contains(line.ref());
+}
+
+bool BehindPlane::contains_all() {
+  const std::vector<Vec3d>& vertices = side_.mesh.vertices;
+  // Vertices that no face uses may be anywhere.
+  return std::all_of(vertices.begin(), vertices.end(), [this](const Vec3d& v) { return space_.contains(v); }) ||
+         contains(side_.tree.root());
 }
 
 bool BehindPlane::contains(bvh::NodeRef node) {

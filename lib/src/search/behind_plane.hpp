@@ -22,6 +22,8 @@ class BehindPlane {
 
   /// Does all that lies below the node lie in the closed half space? Exactly.
   bool contains(bvh::NodeRef node);
+  /// Does the whole object?
+  bool contains_all();
 
  private:
   bool contains_line(const bvh::SupportLine& line);

@@ -13,6 +13,14 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double unit_roundoff = 0x1p-53;
 
+/// Bound on the length of what a unit vector becomes.
+double stretch_of(const Eigen::Matrix3d& linear) {
+  const double greatest = linear.cwiseAbs().maxCoeff();
+  if (!(greatest > 0 && greatest < infinity)) return greatest;
+  const Eigen::Matrix3d m = linear / greatest;
+  return greatest * std::sqrt((m.transpose() * m).cwiseAbs().rowwise().sum().maxCoeff()) * (1 + 0x1p-40);
+}
+
 }  // namespace
 
 LineReach::LineReach(const Vec3d& m, double unit) {
@@ -36,10 +44,26 @@ LineReach::LineReach(const Vec3d& m, double unit) {
               static_cast<std::uint8_t>(first_corner + (corner ^ 7U))};
 }
 
+void LineReach::store(bool along, double scale, std::size_t lane, simd::FrameSide& side) const {
+  const Words& words = along ? along_ : against_;
+  // Both bytes of a word within the 16 bytes where it lies.
+  const auto bytes = [](std::size_t word) { return static_cast<std::uint16_t>(0x0100U + 0x0202U * (word % 8)); };
+  constexpr std::uint16_t none = 0x8080;
+  const bool is_high = words[1] >= bvh::first_face_word + 8;
+  side.axis[lane] = bytes(words[0]);
+  side.face_low[lane] = is_high ? none : bytes(words[1]);
+  side.face_high[lane] = is_high ? bytes(words[1]) : none;
+  side.corner[lane] = bytes(words[2]);
+  side.axis_factor[lane] = static_cast<float>(factor_[0] * scale);
+  side.face_factor[lane] = static_cast<float>(factor_[1] * scale);
+  side.corner_factor[lane] = static_cast<float>(factor_[2] * scale);
+}
+
 FrameGap::Side::Side(const Object& object, const Pose& pose)
     : linear(pose.linear()),
       centre(object.tree().centre()),
       world_centre(linear * centre),
+      stretch(stretch_of(linear)),
       unit(object.tree().unit()),
       size(linear.cwiseAbs().rowwise().sum().maxCoeff() *
            (centre.cwiseAbs().maxCoeff() + 2 * bvh::support_most * unit)) {}
@@ -59,7 +83,7 @@ FrameGap::FrameGap(const Object& a, const Pose& pose_a, const Object& b, const P
 // n 6u, the difference of the centres and its product with n 9u, the last sums 4u: less than 32u in all.
 double FrameGap::slack(const Vec3d& axis) const { return 128 * unit_roundoff * (axis.cwiseAbs().sum() * size_); }
 
-void FrameGap::set_axis(const Vec3d& axis, const Primitive* near_a) {
+void FrameGap::set_axis(const Vec3d& axis) {
   const double greatest = axis.cwiseAbs().maxCoeff();
   if (!is_moderate_ || !(greatest > 0 && greatest < infinity)) return;
   std::array<Vec3d, axes> n;
@@ -81,9 +105,91 @@ void FrameGap::set_axis(const Vec3d& axis, const Primitive* near_a) {
   // products of the axes with each other, which is at most the greatest sum of magnitudes in a row of these.
   Eigen::Matrix3d all;
   all << n[0], n[1], n[2];
+  axes_ = all;
   const double eigenvalue = (all.transpose() * all).cwiseAbs().rowwise().sum().maxCoeff();
-  if (near_a != nullptr) near_a_ = reach_a(*near_a).along[0];
   scale_ = (1 - 0x1p-49) / std::sqrt(eigenvalue);
+}
+
+double FrameGap::in_single(simd::DistanceFrame& frame) {
+  frame = {};
+  // The three factors of a reach, in the order of magnitude of the components of a vector m, are together at most
+  // 1.13 |m|.
+  const double size = 1.13 * bvh::support_most * (a_.stretch * a_.unit + b_.stretch * b_.unit) + centre_between_.norm();
+  if (!is_moderate_ || !(size > 0x1p-200 && size < 0x1p200)) {  // all gaps are 0, all upper bounds infinite
+    frame.slack = std::numeric_limits<float>::infinity();
+    a_.dual_slack = b_.dual_slack = infinity;
+    return 1;
+  }
+  const double scale = 0.499 / size;
+  float most_slack = 0;
+  for (std::size_t i = 0; i < axes; ++i) {
+    a_.reach[i].store(true, scale, 2 * i, frame.a);
+    a_.reach[i].store(false, scale, 2 * i + 1, frame.a);
+    b_.reach[i].store(false, scale, 2 * i, frame.b);
+    b_.reach[i].store(true, scale, 2 * i + 1, frame.b);
+    const auto slack = static_cast<float>(2.02 * slack_[i] * scale) + simd::single_slack;
+    most_slack = std::max(most_slack, slack);
+    frame.centre_b[i] = static_cast<float>(offset_[i] * scale);
+    frame.offset[2 * i] = frame.centre_b[i] - slack;
+    frame.offset[2 * i + 1] = -frame.centre_b[i] - slack;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto row = static_cast<Eigen::Index>(k);
+      frame.a.vertex[3 * i + k] = static_cast<float>(a_.m[i][row] * a_.unit * scale);
+      frame.b.vertex[3 * i + k] = static_cast<float>(b_.m[i][row] * b_.unit * scale);
+    }
+  }
+  for (Side* side : {&a_, &b_}) {
+    Eigen::Matrix3d to_frame;
+    for (std::size_t i = 0; i < axes; ++i) {
+      to_frame.row(static_cast<Eigen::Index>(i)) = side->m[i].transpose() * (side->unit * scale);
+    }
+    side->dual = to_frame.inverse().transpose();
+    // Heights are off by what is left of dual^T to_frame - 1, and by the rounding of the sums for that and for them.
+    const double left = (to_frame.transpose() * side->dual - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+    const double slack = bvh::support_most * (9 * left + 256 * unit_roundoff * to_frame.norm() * side->dual.norm());
+    side->dual_slack = slack < 100 ? slack + 0x1p-20 : infinity;
+  }
+  offset_in_frame_ = Vec3d(offset_[0], offset_[1], offset_[2]) * scale;
+  frame.offset[6] = frame.offset[7] = -1;
+  frame.shrink = static_cast<float>(scale_ * scale_ * (1 - 0x1p-19));
+  frame.slack = most_slack;
+  return 1 / scale;
+}
+
+FrameGap::FrameSlab FrameGap::slab(const Side& side, const bvh::SupportLine& line,
+                                   const std::array<float, simd::reach_lanes>& reach, int sign) {
+  FrameSlab slab;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    slab.middle[i] = sign * 0.5 * (static_cast<double>(reach[2 * k]) - reach[2 * k + 1]);
+    slab.half[i] = 0.5 * (static_cast<double>(reach[2 * k]) + reach[2 * k + 1]) + simd::single_slack;
+  }
+  bvh::Slab of_line;
+  if (!(side.dual_slack < infinity) || !bvh::slab_of(line, of_line)) return slab;
+  slab.normal = side.dual * of_line.normal;
+  slab.along = of_line.along + side.dual_slack;
+  slab.against = of_line.against + side.dual_slack;
+  return slab;
+}
+
+double FrameGap::slab_gap(const FrameSlab& a, const FrameSlab& b) const {
+  // With the normal p of one and q of the other, p = c q + r: heights along p are sums of heights in the other's slab
+  // and along r, which is short, in its box.
+  const auto gap = [this](const FrameSlab& own, const FrameSlab& other, int sign) {
+    const double square = own.normal.squaredNorm();
+    if (square == 0) return -1.0;
+    const double other_square = other.normal.squaredNorm();
+    const double c = other_square > 0 ? own.normal.dot(other.normal) / other_square : 0;
+    const Vec3d r = own.normal - c * other.normal;
+    const double middle = r.dot(other.middle);
+    const double half = r.cwiseAbs().dot(other.half);
+    const double most = middle + half + (c > 0 ? c * other.along : -c * other.against);
+    const double least = middle - half - (c > 0 ? c * other.against : -c * other.along);
+    const double between = sign * own.normal.dot(offset_in_frame_);  // from the own centre to the other's
+    const double beyond = std::max(between + least - own.along, -between - most - own.against);
+    return (beyond - own.normal.cwiseAbs().sum() * 0x1p-40) / std::sqrt(square) * (1 - 0x1p-20);
+  };
+  return std::max(gap(a, b, 1), gap(b, a, -1));
 }
 
 FrameGap::Reach FrameGap::reach(const Side& side, const bvh::SupportLine& line) {
@@ -118,28 +224,6 @@ FrameGap::Reach FrameGap::enclose(const Reach& x, const Reach& y) {
     reach.against[i] = std::max(x.against[i], y.against[i]);
   }
   return reach;
-}
-
-bool FrameGap::stays_below(const Side& side, const TreeSide& tree, bvh::NodeRef node, bool along, double limit) {
-  for (std::uint32_t i = node.first(); i < node.first() + node.count(); ++i) {
-    if (node.is_leaf()) {
-      const Reach all = reach(side, tree.mesh.primitive(tree.tree.faces()[i]));
-      if (!((along ? all.along[0] : all.against[0]) <= limit)) return false;
-      continue;
-    }
-    const bvh::SupportLine& line = tree.tree.lines()[i];
-    const double most = along ? side.reach[0].along(line) : side.reach[0].against(line);
-    if (!(most <= limit) && !stays_below(side, tree, line.ref(), along, limit)) return false;
-  }
-  return true;
-}
-
-bool FrameGap::is_gap_nearly(double gap, const TreeSide& a, const TreeSide& b) const {
-  // Where the nearest faces are, each object must end.
-  const double rest = offset_[0] - gap;
-  const double tolerance = 0x1p-30 * size_;
-  return is_moderate_ && stays_below(a_, a, a.tree.root(), true, near_a_ + tolerance) &&
-         stays_below(b_, b, b.tree.root(), false, rest - near_a_ + tolerance);
 }
 
 Vec3d FrameGap::middle(const Side& side, const bvh::SupportLine* lines, std::size_t count) {

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "simd_distance.hpp"
 #include "tree_side.hpp"
 
 namespace cchip {
@@ -26,6 +27,8 @@ class LineReach {
   double along(const bvh::SupportLine& line) const { return sum(along_, line); }
   /// The same for -m.
   double against(const bvh::SupportLine& line) const { return sum(against_, line); }
+  /// As a lane of a side: `along`, or against.
+  void store(bool along, double scale, std::size_t lane, simd::FrameSide& side) const;
 
  private:
   using Words = std::array<std::uint8_t, 3>;
@@ -57,14 +60,38 @@ class FrameGap {
   /// False: the numbers are so great or so small that nothing is known, and gaps are 0.
   bool is_moderate() const { return is_moderate_; }
   /// One axis is along `axis`, of any length; a zero vector is refused, and the axes stay.
-  /// \param near_a where A ends along the axis, if A and B lie on both sides of a gap across it
-  void set_axis(const Vec3d& axis, const Primitive* near_a = nullptr);
+  void set_axis(const Vec3d& axis);
 
   Reach reach_a(const bvh::SupportLine& line) const { return reach(a_, line); }
   Reach reach_b(const bvh::SupportLine& line) const { return reach(b_, line); }
   Reach reach_a(const Primitive& p) const { return reach(a_, p); }
   Reach reach_b(const Primitive& p) const { return reach(b_, p); }
   static Reach enclose(const Reach& x, const Reach& y);
+
+  /// The same axes in single precision.
+  /// \returns the length in the world of a unit of the frame
+  double in_single(simd::DistanceFrame& frame);
+  /// A slab in the coordinates of the last call of in_single(): for all points x below the node, from the centre of its
+  /// object, -against <= normal . x <= along.
+  struct FrameSlab {
+    Vec3d normal = Vec3d::Zero();
+    double along = 0;
+    double against = 0;
+    Vec3d middle = Vec3d::Zero();  ///< of the node's box in the frame
+    Vec3d half = Vec3d::Zero();
+  };
+  /// \param reach of the node, as DistanceKernels::nodes has it; lanes of B are along the opposite directions
+  FrameSlab slab_a(const bvh::SupportLine& line, const std::array<float, simd::reach_lanes>& reach) const {
+    return slab(a_, line, reach, 1);
+  }
+  FrameSlab slab_b(const bvh::SupportLine& line, const std::array<float, simd::reach_lanes>& reach) const {
+    return slab(b_, line, reach, -1);
+  }
+  /// At most the distance of the nodes in units of the frame, by both slabs; may be negative.
+  double slab_gap(const FrameSlab& a, const FrameSlab& b) const;
+
+  /// The axes times these numbers.
+  Vec3d in_world(const Vec3d& along_axes) const { return axes_ * along_axes; }
 
   /// At most the distance in the world of the sets; at least 0.
   double operator()(const Reach& a, const Reach& b) const {
@@ -78,10 +105,6 @@ class FrameGap {
     }
     return std::sqrt(sum) * scale_;
   }
-
-  /// True only if the whole objects are about this far apart along the first axis, beginning at the face of set_axis().
-  /// Says nothing certain.
-  bool is_gap_nearly(double gap, const TreeSide& a, const TreeSide& b) const;
 
   /// In the world, rounded and relative to one point: the middle of what the lines contain.
   Vec3d middle_a(const bvh::SupportLine* lines, std::size_t count) const { return middle(a_, lines, count); }
@@ -100,15 +123,19 @@ class FrameGap {
     Eigen::Matrix3d linear;
     Vec3d centre;        ///< in the object's frame
     Vec3d world_centre;  ///< under the linear map, rounded
+    double stretch;      ///< bound on the length of what a unit vector becomes
     double unit;
     double size;  ///< bound on the sum of the magnitudes that are added up for a coordinate of a point under the map
+    Eigen::Matrix3d dual;   ///< from normals to those in the frame of in_single()
+    double dual_slack = 0;  ///< on heights, for the rounding of that; infinite: there is none
     std::array<Vec3d, axes> m;
     std::array<double, axes> m_centre = {};
     std::array<LineReach, axes> reach;
   };
 
-  static bool stays_below(const Side& side, const TreeSide& tree, bvh::NodeRef node, bool along, double limit);
   static Reach reach(const Side& side, const bvh::SupportLine& line);
+  static FrameSlab slab(const Side& side, const bvh::SupportLine& line,
+                        const std::array<float, simd::reach_lanes>& reach, int sign);
   static Reach reach(const Side& side, const Primitive& p);
   static Vec3d middle(const Side& side, const bvh::SupportLine* lines, std::size_t count);
   double slack(const Vec3d& axis) const;
@@ -121,8 +148,9 @@ class FrameGap {
   bool is_moderate_;
   std::array<double, axes> offset_ = {};
   std::array<double, axes> slack_ = {};
-  double near_a_ = 0;
   double scale_ = 0;  ///< from the root of the sum of squares to the bound
+  Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity();
+  Vec3d offset_in_frame_ = Vec3d::Zero();
 };
 
 struct FrameGap::Line {

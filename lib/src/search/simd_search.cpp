@@ -2,18 +2,10 @@
 // Compiled once for each instruction set by Highway's foreach_target.h. Bounds: docs/cpp/exactness.md.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "search/simd_search.cpp"
-// Vectors of a size that only the machine knows cannot be kept in arrays.
-// The emulation of 128-bit vectors serves computers without any of the instruction sets, and as a check of these. GCC
-// before 12.3 miscompiles it where it vectorises, so this file is compiled without that.
-#define HWY_BROKEN_EMU128 0
-#ifdef CCHIP_SIMD_TARGETS  // a build that needs few of them (tests/ref)
-#define HWY_DISABLED_TARGETS (~(CCHIP_SIMD_TARGETS))
-#else
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_WASM | HWY_WASM_EMU256)
-#endif
-#include <hwy/foreach_target.h>
+#include "simd_targets.hpp"
 // foreach_target.h must come before the others.
 #include <hwy/cache_control.h>
+#include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 #include <array>
@@ -501,17 +493,18 @@ std::vector<std::string> simd_targets() {
   return names;
 }
 
-std::unique_ptr<Search> make_simd_search(const std::string& target, const Margins& margins) {
+std::size_t target_index(const std::string& target, std::size_t entries) {
   for (const std::int64_t bit : target_bits()) {
     if (target != hwy::TargetName(bit)) continue;
-    // A choice of our own looks up the table of HWY_EXPORT: hwy::GetChosenTarget() is that of the whole process, where
-    // other users of Highway have chosen, too.
     hwy::ChosenTarget chosen;
     chosen.Update(bit);
-    constexpr std::size_t entries = std::size(HWY_DISPATCH_TABLE(make));  // 1 if a single target is compiled in
-    return HWY_DISPATCH_TABLE(make)[entries > 1 ? chosen.GetIndex() : 0](margins);
+    return entries > 1 ? chosen.GetIndex() : 0;
   }
   throw std::invalid_argument("instruction set " + target + " is not one that this computer and this program have");
+}
+
+std::unique_ptr<Search> make_simd_search(const std::string& target, const Margins& margins) {
+  return HWY_DISPATCH_TABLE(make)[target_index(target, std::size(HWY_DISPATCH_TABLE(make)))](margins);
 }
 
 }  // namespace cchip

@@ -182,6 +182,39 @@ std::vector<std::uint8_t> used_vertices(const Mesh& mesh) {
   return used;
 }
 
+// Words of slabs are not negative: a search that has no direction for them adds them, saturated, to what never
+// separates. So a part of a normal, from -1 to 1, and a height are both moved up and halved.
+constexpr double slab_scale = 16383;
+constexpr double slab_bias = support_most + 2;
+constexpr std::int16_t no_slab = 32767;
+
+/// The normal of two words on the octahedron; its lower half is folded outward over the corners of the square.
+Vec3d unfolded(std::int16_t word_u, std::int16_t word_v) {
+  const double u = word_u / slab_scale - 1;
+  const double v = word_v / slab_scale - 1;
+  const double z = 1 - std::abs(u) - std::abs(v);
+  const double fold = z < 0 ? -z : 0;
+  return {u > 0 ? u - fold : u + fold, v > 0 ? v - fold : v + fold, z};
+}
+
+std::int16_t height_word(double height) { return static_cast<std::int16_t>(std::ceil((height + slab_bias) / 2)); }
+double height_of(std::int16_t word) { return 2 * word - slab_bias; }
+
+/// The words of the nearest normal that they can be of, and no heights yet.
+std::array<std::int16_t, 4> slab_words(const Vec3d& sum) {
+  const double size = sum.cwiseAbs().sum();
+  if (!(size > 0x1p-900 && size < 0x1p900)) return {0, 0, no_slab, no_slab};
+  double u = sum.x() / size;
+  double v = sum.y() / size;
+  if (sum.z() < 0) {
+    const double old = u;
+    u = (u < 0 ? -1 : 1) * (1 - std::abs(v));
+    v = (v < 0 ? -1 : 1) * (1 - std::abs(old));
+  }
+  const auto word = [](double x) { return static_cast<std::int16_t>(std::lround((x + 1) * slab_scale)); };
+  return {word(u), word(v), 0, 0};
+}
+
 /// A triangle has its vertex 0 twice.
 Corners four_corners(const Mesh::Face& face) {
   return {face.vertex[0], face.vertex[1], face.vertex[2], face.vertex[face.kind == Kind::quad ? 3 : 0]};
@@ -361,11 +394,70 @@ void SupportTree::fill(const Mesh& mesh, std::vector<NodeRef> refs, const std::v
     set_ref(line, ref);
     put(n == 0 ? size_ : n - 1, line);
   }
+  put_slabs(refs);
   for (std::size_t i = 1; i < 4; ++i) put(size_ + i, SupportLine());
   std::memset(lines + vertices_at_ + 6 * faces_.size() * sizeof(float), 0, behind * sizeof(float));
   whole_words_ = this->lines()[size_].word;
   extent_ = centre_.cwiseAbs().maxCoeff() + support_most * unit_;
   for (std::size_t k = 0; k < 3; ++k) half_[k] = unit_ * std::max(whole_words_[2 * k], whole_words_[2 * k + 1]);
+}
+
+/// The slabs of all nodes but large ones, from the vertices in single precision.
+void SupportTree::put_slabs(const std::vector<NodeRef>& refs) {
+  constexpr std::uint32_t most_sets = 128;  // of four vertices
+  struct Below {
+    Vec3d normal = Vec3d::Zero();
+    std::uint32_t sets = 0;
+  };
+  std::vector<Below> below(refs.size());
+  const auto visit = [this](NodeRef leaf, const auto& take) {
+    const float* const v = vertices(leaf.first());
+    const std::size_t stride = std::size_t{4} * leaf.vertex_sets();
+    for (std::size_t at = 0; at < stride; ++at) take(Vec3d(v[at], v[stride + at], v[2 * stride + at]));
+  };
+  std::vector<NodeRef> stack;
+  for (std::size_t n = refs.size(); n-- > 0;) {
+    const NodeRef ref = refs[n];
+    Below& here = below[n];
+    if (ref.is_leaf()) {
+      std::array<Vec3d, 8> v;
+      std::size_t count = 0;
+      visit(ref, [&](const Vec3d& at) { v[count++] = at; });
+      for (std::size_t i = 0; i < count; i += 4) here.normal += (v[i + 2] - v[i]).cross(v[i + 3] - v[i + 1]);
+      here.sets = ref.vertex_sets();
+    } else {
+      for (std::uint32_t k = 0; k < ref.count(); ++k) {
+        here.normal += below[ref.first() + k + 1].normal;
+        here.sets += below[ref.first() + k + 1].sets;
+      }
+    }
+    std::array<std::int16_t, 4> words = {0, 0, no_slab, no_slab};
+    if (here.sets <= most_sets) words = slab_words(here.normal);
+    if (words[2] != no_slab) {
+      const Vec3d normal = unfolded(words[0], words[1]);
+      double greatest = -support_most;
+      double least = support_most;
+      stack.assign(1, ref);
+      while (!stack.empty()) {
+        const NodeRef node = stack.back();
+        stack.pop_back();
+        if (!node.is_leaf()) {
+          for (std::uint32_t k = 0; k < node.count(); ++k) stack.push_back(lines()[node.first() + k].ref());
+          continue;
+        }
+        visit(node, [&](const Vec3d& at) {
+          const double height = normal.dot(at);
+          greatest = height > greatest ? height : greatest;
+          least = height < least ? height : least;
+        });
+      }
+      // A vertex is off by less than 2^-8 units in each coordinate.
+      words[2] = height_word(greatest + 0.01);
+      words[3] = height_word(0.01 - least);
+    }
+    std::byte* const line = memory_.data() + (n == 0 ? size_ : n - 1) * sizeof(SupportLine);
+    std::memcpy(line + first_slab_word * sizeof words[0], words.data(), sizeof words);
+  }
 }
 
 std::array<float, 24> SupportTree::vertices_of(const Primitive& primitive) const {
@@ -404,6 +496,15 @@ Tree SupportTree::topology() const {
     }
   }
   return tree;
+}
+
+bool slab_of(const SupportLine& line, Slab& slab) {
+  const std::int16_t* const words = line.word.data() + first_slab_word;
+  if (words[2] == no_slab) return false;
+  slab.normal = unfolded(words[0], words[1]);
+  slab.along = height_of(words[2]);
+  slab.against = height_of(words[3]);
+  return true;
 }
 
 Dop26 dop_of(const SupportTree& tree, const SupportLine& line) {

@@ -47,7 +47,9 @@ class NodeRef {
 inline constexpr std::size_t support_words = 32;
 inline constexpr std::size_t first_corner_word = 8;
 inline constexpr std::size_t first_face_word = 16;
-/// Direction of a word, not normalised; 0, 0, 0 for those without one: 6, 7 (the reference) and 28..31.
+///  words 28 to 31 are the node's slab
+inline constexpr std::size_t first_slab_word = 28;
+/// Direction of a word, not normalised; 0, 0, 0 for those without one: 6, 7 (the reference) and 28..31 (the slab).
 constexpr std::array<int, 3> support_direction(std::size_t word) {
   std::array<int, 3> d = {0, 0, 0};
   const auto sign = [word](std::size_t bit) { return (word >> bit & 1U) != 0 ? -1 : 1; };
@@ -74,6 +76,16 @@ struct alignas(64) SupportLine {
   }
 };
 inline constexpr int support_most = 29000;
+
+/// Two planes across the mean normal of a node's faces: what lies below the node is thinner between them than between
+/// any others, nearly. Normals are on the octahedron |x| + |y| + |z| = 1, unfolded into the square of two words.
+struct Slab {
+  Vec3d normal = Vec3d::Zero();  ///< of |normal|_1 = 1, nearly
+  double along = 0;              ///< normal . (x - centre) is at most this in units of the object, for all x below
+  double against = 0;            ///< and at least minus this
+};
+/// \returns false if the node has none: it is large, or its normals cancel
+bool slab_of(const SupportLine& line, Slab& slab);
 
 /// Aligned to a cache line; free_bytes() takes it back.
 /// \throws std::bad_alloc
@@ -159,6 +171,7 @@ class SupportTree {
   /// \param refs what each node refers to; those of leaves do not matter
   /// \param leaves in the order of their places
   void fill(const Mesh& mesh, std::vector<NodeRef> refs, const std::vector<Leaf>& leaves);
+  void put_slabs(const std::vector<NodeRef>& refs);
 
   Vec3d centre_;
   double unit_;

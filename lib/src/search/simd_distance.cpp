@@ -1,0 +1,384 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiled once for each instruction set by Highway's foreach_target.h. Bounds: docs/cpp/exactness.md.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "search/simd_distance.cpp"
+#include "simd_targets.hpp"
+// foreach_target.h must come before the others.
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <array>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+
+#include "simd_distance.hpp"
+#include "simd_faces-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace cchip {
+namespace HWY_NAMESPACE {
+
+using D4 = hn::FixedTag<float, 4>;
+using V4 = hn::Vec<D4>;
+using M4 = hn::Mask<D4>;
+
+/// Reaches of a node along the lanes.
+HWY_INLINE void reach(const FrameSide& side, const SupportLine& line, float* to) {
+  const hn::FixedTag<std::int16_t, 8> d16;
+  const hn::Repartition<std::uint8_t, decltype(d16)> d8;
+  const auto* const words = reinterpret_cast<const std::uint8_t*>(line.word.data());
+  const auto bytes = [&d8](const std::array<std::uint16_t, reach_lanes>& from) {
+    return hn::Load(d8, reinterpret_cast<const std::uint8_t*>(from.data()));
+  };
+  const auto axis = hn::BitCast(d16, hn::TableLookupBytes(hn::Load(d8, words), bytes(side.axis)));
+  const auto corner = hn::BitCast(d16, hn::TableLookupBytes(hn::Load(d8, words + 16), bytes(side.corner)));
+  const auto face = hn::BitCast(d16, hn::Or(hn::TableLookupBytesOr0(hn::Load(d8, words + 32), bytes(side.face_low)),
+                                            hn::TableLookupBytesOr0(hn::Load(d8, words + 48), bytes(side.face_high))));
+  const hn::FixedTag<std::int32_t, 4> d32;
+  const hn::Half<decltype(d16)> half;
+  const D4 d;
+  for (std::size_t at = 0; at < reach_lanes; at += 4) {
+    const auto whole = [&](hn::Vec<decltype(d16)> v) {
+      return hn::ConvertTo(d, hn::PromoteTo(d32, at == 0 ? hn::LowerHalf(half, v) : hn::UpperHalf(half, v)));
+    };
+    V4 sum = hn::Mul(whole(axis), hn::Load(d, side.axis_factor.data() + at));
+    sum = hn::MulAdd(whole(corner), hn::Load(d, side.corner_factor.data() + at), sum);
+    sum = hn::MulAdd(whole(face), hn::Load(d, side.face_factor.data() + at), sum);
+    hn::Store(sum, d, to + at);
+  }
+}
+
+/// Four vectors as the columns of what they were the rows of.
+HWY_INLINE void transpose(V4& p, V4& q, V4& r, V4& s) {
+  const D4 d;
+  const hn::Repartition<double, D4> d64;
+  const auto wide = [&d64](V4 v) { return hn::BitCast(d64, v); };
+  const V4 a = hn::InterleaveLower(d, p, q);
+  const V4 b = hn::InterleaveLower(d, r, s);
+  const V4 c = hn::InterleaveUpper(d, p, q);
+  const V4 e = hn::InterleaveUpper(d, r, s);
+  p = hn::BitCast(d, hn::InterleaveLower(d64, wide(a), wide(b)));
+  q = hn::BitCast(d, hn::InterleaveUpper(d64, wide(a), wide(b)));
+  r = hn::BitCast(d, hn::InterleaveLower(d64, wide(c), wide(e)));
+  s = hn::BitCast(d, hn::InterleaveUpper(d64, wide(c), wide(e)));
+}
+
+unsigned nodes(const DistanceFrame& frame, const SupportLine* a, std::uint32_t count_a, const SupportLine* b,
+               std::uint32_t count_b, float limit, NodeGaps& gaps) {
+  const D4 d;
+  for (std::size_t k = 0; k < 4; ++k) reach(frame.b, b[k], gaps.b[k].data());
+  std::array<V4, reach_lanes> of_b;  // lane by lane, of four nodes
+  for (std::size_t at = 0; at < reach_lanes; at += 4) {
+    for (std::size_t k = 0; k < 4; ++k) of_b[at + k] = hn::Load(d, gaps.b[k].data() + at);
+    transpose(of_b[at], of_b[at + 1], of_b[at + 2], of_b[at + 3]);
+  }
+  const V4 shrink = hn::Set(d, frame.shrink);
+  const V4 most = hn::Set(d, limit * limit * (1 + relative_slack));
+  const unsigned mask_b = (1U << count_b) - 1;
+  unsigned near = 0;
+  for (std::size_t i = 0; i < count_a; ++i) {
+    reach(frame.a, a[i], gaps.a[i].data());
+    alignas(32) std::array<float, reach_lanes> left;
+    for (std::size_t at = 0; at < reach_lanes; at += 4) {
+      hn::Store(hn::Sub(hn::Load(d, frame.offset.data() + at), hn::Load(d, gaps.a[i].data() + at)), d,
+                left.data() + at);
+    }
+    V4 square = hn::Zero(d);
+    for (std::size_t lane = 0; lane < 6; lane += 2) {
+      const V4 gap = hn::Max(
+          hn::Max(hn::Sub(hn::Set(d, left[lane]), of_b[lane]), hn::Sub(hn::Set(d, left[lane + 1]), of_b[lane + 1])),
+          hn::Zero(d));
+      square = hn::MulAdd(gap, gap, square);
+    }
+    square = hn::Mul(square, shrink);
+    hn::Store(square, d, gaps.square.data() + 4 * i);
+    std::array<std::uint8_t, 8> bits = {};
+    hn::StoreMaskBits(d, hn::Le(square, most), bits.data());
+    near |= (bits[0] & mask_b) << 4 * i;
+  }
+  return near;
+}
+
+struct Point {
+  V4 x, y, z;
+};
+HWY_INLINE Point operator-(const Point& p, const Point& q) {
+  return {hn::Sub(p.x, q.x), hn::Sub(p.y, q.y), hn::Sub(p.z, q.z)};
+}
+HWY_INLINE Point operator*(V4 s, const Point& p) { return {hn::Mul(s, p.x), hn::Mul(s, p.y), hn::Mul(s, p.z)}; }
+HWY_INLINE V4 dot(const Point& p, const Point& q) {
+  return hn::MulAdd(p.x, q.x, hn::MulAdd(p.y, q.y, hn::Mul(p.z, q.z)));
+}
+HWY_INLINE Point cross(const Point& p, const Point& q) {
+  return {hn::MulSub(p.y, q.z, hn::Mul(p.z, q.y)), hn::MulSub(p.z, q.x, hn::Mul(p.x, q.z)),
+          hn::MulSub(p.x, q.y, hn::Mul(p.y, q.x))};
+}
+HWY_INLINE V4 sum_of_sizes(const Point& p) { return hn::Add(hn::Abs(p.x), hn::Add(hn::Abs(p.y), hn::Abs(p.z))); }
+/// Between 0 and 1; NaN becomes 0.
+HWY_INLINE V4 clamped(V4 x) {
+  const D4 d;
+  return hn::IfThenElseZero(hn::Gt(x, hn::Zero(d)), hn::Min(x, hn::Set(d, 1)));
+}
+
+/// A triangle of each lane.
+struct Triangles {
+  std::array<Point, 3> v;
+  std::array<Point, 3> edge;     ///< from vertex i to the next
+  std::array<V4, 3> per_square;  ///< 1 / square of its length
+  std::array<V4, 3> square;
+  Point normal;
+  V4 per_normal;  ///< 1 / square of the normal
+
+  HWY_INLINE explicit Triangles(const std::array<Point, 3>& vertices) : v(vertices) {
+    const D4 d;
+    for (std::size_t i = 0; i < 3; ++i) edge[i] = v[(i + 1) % 3] - v[i];
+    normal = cross(edge[0], edge[1]);
+    per_normal = hn::Div(hn::Set(d, 1), dot(normal, normal));
+  }
+  HWY_INLINE void measure_edges() {
+    const D4 d;
+    for (std::size_t i = 0; i < 3; ++i) {
+      square[i] = dot(edge[i], edge[i]);
+      per_square[i] = hn::Div(hn::Set(d, 1), square[i]);
+    }
+  }
+  /// At most the distance from another one, by the gap along the normal.
+  HWY_INLINE V4 gap(const Triangles& other, float slack) const {
+    const D4 d;
+    const V4 p = dot(normal, other.v[0] - v[0]);
+    const V4 q = dot(normal, other.v[1] - v[0]);
+    const V4 r = dot(normal, other.v[2] - v[0]);
+    const V4 own = hn::Max(hn::Abs(dot(normal, edge[0])), hn::Abs(dot(normal, edge[2])));  // 0 but for rounding
+    const V4 low = hn::Min(p, hn::Min(q, r));
+    const V4 high = hn::Max(p, hn::Max(q, r));
+    const V4 gap = hn::NegMulAdd(sum_of_sizes(normal), hn::Set(d, slack), hn::Sub(hn::Max(low, hn::Neg(high)), own));
+    return hn::IfThenElseZero(hn::And(hn::Gt(gap, hn::Zero(d)), hn::Lt(per_normal, hn::Set(d, 0x1p100F))),
+                              hn::Mul(gap, hn::Mul(hn::Sqrt(per_normal), hn::Set(d, 1 - relative_slack))));
+  }
+};
+
+/// The vector between the nearest points so far.
+struct Nearest {
+  Point between;
+  V4 square;
+  HWY_INLINE void offer(const Point& p, M4 valid) {
+    const V4 here = dot(p, p);
+    const M4 better = hn::And(valid, hn::Lt(here, square));
+    square = hn::IfThenElse(better, here, square);
+    between = {hn::IfThenElse(better, p.x, between.x), hn::IfThenElse(better, p.y, between.y),
+               hn::IfThenElse(better, p.z, between.z)};
+  }
+  HWY_INLINE void offer(const Point& p) { offer(p, hn::Eq(p.x, p.x)); }
+};
+
+/// Vertices of `points` and the triangles' insides below them.
+/// \param from_points `between` leads from the points to the triangles
+template <bool from_points>
+HWY_INLINE void offer_feet(const Triangles& face, const std::array<Point, 3>& points, Nearest& best) {
+  const D4 d;
+  const V4 zero = hn::Zero(d);
+  const Point& u = face.edge[0];
+  const Point v = face.v[2] - face.v[0];
+  const Point along_u = face.per_normal * cross(v, face.normal);
+  const Point along_v = face.per_normal * cross(face.normal, u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Point w = points[i] - face.v[0];
+    const V4 s = dot(w, along_u);
+    const V4 t = dot(w, along_v);
+    const M4 inside = hn::And(hn::And(hn::Ge(s, zero), hn::Ge(t, zero)), hn::Le(hn::Add(s, t), hn::Set(d, 1)));
+    const Point foot = {hn::MulAdd(s, u.x, hn::Mul(t, v.x)), hn::MulAdd(s, u.y, hn::Mul(t, v.y)),
+                        hn::MulAdd(s, u.z, hn::Mul(t, v.z))};
+    best.offer(from_points ? foot - w : w - foot, inside);
+  }
+}
+
+HWY_INLINE void offer_edges(const Triangles& a, const Triangles& b, Nearest& best) {
+  const D4 d;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Point& u = a.edge[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Point& v = b.edge[k];
+      const Point w = b.v[k] - a.v[i];
+      const V4 uv = dot(u, v);
+      const V4 uw = dot(u, w);
+      const V4 vw = dot(v, w);
+      const V4 determinant = hn::NegMulAdd(uv, uv, hn::Mul(a.square[i], b.square[k]));
+      V4 s = clamped(hn::Div(hn::MulSub(uw, b.square[k], hn::Mul(vw, uv)), determinant));
+      s = hn::IfThenElseZero(hn::Gt(determinant, hn::Zero(d)), s);
+      const V4 t = clamped(hn::Mul(hn::MulSub(s, uv, vw), b.per_square[k]));
+      s = clamped(hn::Mul(hn::MulAdd(t, uv, uw), a.per_square[i]));
+      best.offer({hn::NegMulAdd(s, u.x, hn::MulAdd(t, v.x, w.x)), hn::NegMulAdd(s, u.y, hn::MulAdd(t, v.y, w.y)),
+                  hn::NegMulAdd(s, u.z, hn::MulAdd(t, v.z, w.z))});
+    }
+  }
+}
+
+/// Vertices of a leaf in the frame: lane 4 i + v is vertex v of face i.
+struct FrameLeaf {
+  alignas(32) std::array<float, 8> x, y, z;
+};
+
+HWY_INLINE void load_frame(const FrameSide& side, const std::array<float, 3>& centre, const float* v, NodeRef leaf,
+                           FrameLeaf& to) {
+  using V = hn::Vec<D8F>;
+  load_leaf(v, leaf, [&](std::size_t at, V x, V y, V z) {
+    const D8F d;
+    const auto row = [&](std::size_t i) {
+      return hn::MulAdd(x, hn::Set(d, side.vertex[3 * i]),
+                        hn::MulAdd(y, hn::Set(d, side.vertex[3 * i + 1]),
+                                   hn::MulAdd(z, hn::Set(d, side.vertex[3 * i + 2]), hn::Set(d, centre[i]))));
+    };
+    hn::Store(row(0), d, to.x.data() + at);
+    hn::Store(row(1), d, to.y.data() + at);
+    hn::Store(row(2), d, to.z.data() + at);
+  });
+}
+
+/// Vertex `at[p]` of the leaf in lane p.
+HWY_INLINE Point vertices(const FrameLeaf& leaf, const std::array<std::uint8_t, 4>& at) {
+  const D4 d;
+  const auto take = [&](const std::array<float, 8>& from) {
+    alignas(16) const std::array<float, 4> lanes = {from[at[0]], from[at[1]], from[at[2]], from[at[3]]};
+    return hn::Load(d, lanes.data());
+  };
+  return {take(leaf.x), take(leaf.y), take(leaf.z)};
+}
+
+/// Bounds on the distances of the hulls of the points in each lane along an axis.
+struct Span {
+  V4 low, high;
+};
+HWY_INLINE Span span_of(const Point& axis, const Point& p, const Point& q, const Point& r, const Point& s) {
+  const V4 at_p = dot(axis, p);
+  const V4 at_q = dot(axis, q);
+  const V4 at_r = dot(axis, r);
+  const V4 at_s = dot(axis, s);
+  return {hn::Min(hn::Min(at_p, at_q), hn::Min(at_r, at_s)), hn::Max(hn::Max(at_p, at_q), hn::Max(at_r, at_s))};
+}
+
+/// What an axis between nearest points proves of the hulls of four vertices each.
+HWY_INLINE V4 proved_gap(const Point& axis, const std::array<Point, 4>& a, const std::array<Point, 4>& b, float slack) {
+  const D4 d;
+  const Span of_a = span_of(axis, a[0], a[1], a[2], a[3]);
+  const Span of_b = span_of(axis, b[0], b[1], b[2], b[3]);
+  const V4 gap = hn::NegMulAdd(sum_of_sizes(axis), hn::Set(d, slack), hn::Sub(of_b.low, of_a.high));
+  const V4 length = hn::Sqrt(dot(axis, axis));
+  const M4 proved = hn::And(hn::Gt(gap, hn::Zero(d)), hn::Gt(length, hn::Set(d, shortest_axis)));
+  return hn::IfThenElseZero(proved, hn::Mul(hn::Div(gap, length), hn::Set(d, 1 - relative_slack)));
+}
+
+/// Vectors between the nearest points of two triangles in each lane.
+HWY_INLINE Nearest nearest_of(Triangles& p, Triangles& q) {
+  const D4 d;
+  p.measure_edges();
+  q.measure_edges();
+  Nearest best = {{hn::Zero(d), hn::Zero(d), hn::Zero(d)}, hn::Set(d, std::numeric_limits<float>::max())};
+  offer_edges(p, q, best);
+  offer_feet<true>(q, p.v, best);
+  offer_feet<false>(p, q.v, best);
+  return best;
+}
+
+/// Vertices of up to two triangles of a leaf, vertex v of both in lanes 0 0 1 1, or in 0 1 0 1.
+template <bool of_a>
+HWY_INLINE std::array<Point, 3> spread(const FrameLeaf& leaf, bool two) {
+  const D4 d;
+  const auto put = [&](const std::array<float, 8>& from, auto&& take) {
+    const V4 first = hn::Load(d, from.data());
+    const V4 second = hn::Load(d, from.data() + (two ? 4 : 0));
+    const auto both = [&](V4 p, V4 q) { return of_a ? hn::ConcatUpperLower(d, q, p) : hn::InterleaveLower(d, p, q); };
+    take(0, both(hn::Broadcast<0>(first), hn::Broadcast<0>(second)));
+    take(1, both(hn::Broadcast<1>(first), hn::Broadcast<1>(second)));
+    take(2, both(hn::Broadcast<2>(first), hn::Broadcast<2>(second)));
+  };
+  std::array<Point, 3> v;
+  put(leaf.x, [&](std::size_t i, V4 x) { v[i].x = x; });
+  put(leaf.y, [&](std::size_t i, V4 y) { v[i].y = y; });
+  put(leaf.z, [&](std::size_t i, V4 z) { v[i].z = z; });
+  return v;
+}
+
+bool leaves(const DistanceFrame& frame, const float* vertices_a, NodeRef leaf_a, const float* vertices_b,
+            NodeRef leaf_b, float limit, FaceGaps& gaps) {
+  const D4 d;
+  FrameLeaf a;
+  FrameLeaf b;
+  load_frame(frame.a, {0, 0, 0}, vertices_a, leaf_a, a);
+  load_frame(frame.b, frame.centre_b, vertices_b, leaf_b, b);
+  const auto upper_of = [&](V4 square) {
+    return hn::MulAdd(hn::Sqrt(square), hn::Set(d, 1 + relative_slack), hn::Set(d, frame.slack));
+  };
+  if (HWY_LIKELY(!leaf_a.is_quad() && !leaf_b.is_quad())) {
+    Triangles p(spread<true>(a, leaf_a.count() > 1));
+    Triangles q(spread<false>(b, leaf_b.count() > 1));
+    const V4 along_normals = hn::Max(p.gap(q, frame.slack), q.gap(p, frame.slack));  // most pairs are apart by it
+    hn::Store(along_normals, d, gaps.lower.data());
+    if (hn::AllTrue(d, hn::Gt(along_normals, hn::Set(d, limit)))) return false;
+    const Nearest best = nearest_of(p, q);
+    const V4 lower =
+        proved_gap(best.between, {p.v[0], p.v[1], p.v[2], p.v[2]}, {q.v[0], q.v[1], q.v[2], q.v[2]}, frame.slack);
+    hn::Store(hn::Max(lower, along_normals), d, gaps.lower.data());
+    hn::Store(upper_of(best.square), d, gaps.upper.data());
+    return true;
+  }
+  // Quads: the lanes are the triangles 0 1 2 and 0 2 3 of both.
+  for (std::uint8_t i = 0; i < leaf_a.count(); ++i) {
+    for (std::uint8_t k = 0; k < leaf_b.count(); ++k) {
+      const auto halves = [](std::uint8_t face, bool is_quad, bool of_a) {
+        const auto base = static_cast<std::uint8_t>(4 * face);
+        std::array<std::array<std::uint8_t, 4>, 4> at = {};
+        constexpr std::array<std::array<std::uint8_t, 4>, 2> order = {{{0, 1, 2, 3}, {0, 2, 3, 1}}};
+        for (std::size_t v = 0; v < 4; ++v) {
+          for (std::size_t lane = 0; lane < 4; ++lane) {
+            const std::size_t half = is_quad ? (of_a ? lane / 2 : lane % 2) : 0;
+            at[v][lane] = static_cast<std::uint8_t>(base + order[half][v]);
+          }
+        }
+        return at;
+      };
+      const auto at_a = halves(i, leaf_a.is_quad(), true);
+      const auto at_b = halves(k, leaf_b.is_quad(), false);
+      std::array<Point, 4> points_a;
+      std::array<Point, 4> points_b;
+      for (std::size_t v = 0; v < 4; ++v) {
+        points_a[v] = vertices(a, at_a[v]);
+        points_b[v] = vertices(b, at_b[v]);
+      }
+      Triangles p({points_a[0], points_a[1], points_a[2]});
+      Triangles q({points_b[0], points_b[1], points_b[2]});
+      const Nearest best = nearest_of(p, q);
+      const V4 lower = proved_gap(best.between, points_a, points_b, frame.slack);
+      // Each lane's axis proves its bound for the whole faces; points of each are points of them.
+      gaps.lower[2U * i + k] = hn::GetLane(hn::MaxOfLanes(d, lower));
+      gaps.upper[2U * i + k] = hn::GetLane(upper_of(hn::MinOfLanes(d, best.square)));
+    }
+  }
+  return true;
+}
+
+DistanceKernels kernels() { return {nodes, leaves}; }
+
+}  // namespace HWY_NAMESPACE
+}  // namespace cchip
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace cchip::simd {
+namespace {
+
+HWY_EXPORT(kernels);
+
+}  // namespace
+
+DistanceKernels distance_kernels(const std::string& target) {
+  return HWY_DISPATCH_TABLE(kernels)[target_index(target, std::size(HWY_DISPATCH_TABLE(kernels)))]();
+}
+
+const DistanceKernels& distance_kernels() {
+  static const DistanceKernels best = distance_kernels(simd_targets().front());
+  return best;
+}
+
+}  // namespace cchip::simd
+#endif  // HWY_ONCE
