@@ -30,6 +30,7 @@ using FacePair = std::array<std::uint32_t, 2>;  ///< of A and of B, numbers in t
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// A search that takes more steps asks slabs, too: a short one is over before they pay.
 constexpr std::uint64_t slab_steps = 256;
+constexpr double nearly = 1 - 0x1p-7;
 
 void check(const DistanceRequest& request) {
   if (!(request.rel_error >= 0 && request.rel_error < 1)) {
@@ -142,19 +143,19 @@ class DistanceSearch {
 
   /// True only if nothing below the item is nearer than the nearest faces so far. Of many pairs at the same distance,
   /// as between parallel faces, bounds in single precision leave each open; the planes through the nearest points do
-  /// not. They cost as much as some steps: they wait for as many, or until the whole objects seem to lie behind them.
+  /// not. They cost as much as some steps: they wait for as many, but not if the whole objects seem to lie behind them.
   bool is_behind_planes(const Item& item) {
-    if (!nearest_ || !(item.gap >= (1 - 0x1p-7) * upper_)) return false;
+    if (!nearest_ || !(is_between_planes_ || item.gap >= nearly * upper_)) return false;
     ++as_near_;
     // Those of earlier faces, which were not nearer, still prune.
     const auto is_behind = [&] { return behind_a_ && behind_a_->contains(item.a) && behind_b_->contains(item.b); };
     if (is_behind()) return true;
-    if (planes_of_ == nearest_) return false;
-    if (as_near_ < 128 && !(as_near_ == 4 && whole_gap() >= (1 - 0x1p-7) * upper_)) return false;
+    const std::uint64_t wait = !is_between_planes_ ? 128 : behind_a_ ? 4 : 1;
+    if (planes_of_ == nearest_ || as_near_ < wait) return false;
     make_planes();
     behind_a_.emplace(a_, planes_->a());
     behind_b_.emplace(b_, planes_->b());
-    all_behind_ = whole_gap() >= (1 - 0x1p-7) * upper_ && behind_a_->contains_all() && behind_b_->contains_all();
+    all_behind_ = is_between_planes_ && behind_a_->contains_all() && behind_b_->contains_all();
     return is_behind();
   }
 
@@ -272,8 +273,9 @@ class DistanceSearch {
     upper_ = bounds.upper;
     best_ = bounds;
     nearest_ = {faces.a, faces.b};
-    as_near_ = behind_a_ ? 3 : 0;  // planes again at once where they have paid
+    as_near_ = 0;
     set_axis(bounds.point_b - bounds.point_a);
+    is_between_planes_ = whole_gap() >= nearly * upper_;
   }
 
   void answer(DistanceResult& result) {
@@ -356,8 +358,9 @@ class DistanceSearch {
   double upper_ = infinity;   ///< the least of a pair of faces so far
   double pruned_ = infinity;  ///< the least gap of what was left out since a pair of faces is as near
   std::optional<FacePair> nearest_;
-  DistanceBounds best_;        ///< of these
-  std::uint64_t as_near_ = 0;  ///< items since then that are about as near
+  DistanceBounds best_;             ///< of these
+  std::uint64_t as_near_ = 0;       ///< items since then that are about as near
+  bool is_between_planes_ = false;  ///< by the frame the whole objects are nearly as far apart
   std::optional<exact::NearestPlanes> planes_;
   bool all_behind_ = false;  ///< nothing is nearer than the faces that planes_ is of
   std::optional<FacePair> planes_of_;
