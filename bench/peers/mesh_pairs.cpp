@@ -70,7 +70,42 @@ Mesh box(const Vec3d& corner, const Vec3d& size, int n) {
   return mesh;
 }
 
+/// A tube without ends of radius r and length 4, of 2 x around x along triangles.
+Mesh tube(int around, int along, double r) {
+  Mesh mesh;
+  mesh.name = "tube";
+  for (int k = 0; k <= along; ++k) {
+    for (int i = 0; i < around; ++i) {
+      const double turn = 2 * 3.14159265358979 * i / around;
+      mesh.vertices.emplace_back(r * std::cos(turn), r * std::sin(turn), 4.0 * k / along);
+    }
+  }
+  const auto number = [around](int i, int k) { return static_cast<std::uint32_t>(k * around + i % around); };
+  for (int k = 0; k < along; ++k) {
+    for (int i = 0; i < around; ++i) {
+      mesh.faces.push_back({Kind::tri, {number(i, k), number(i + 1, k), number(i + 1, k + 1), 0}});
+      mesh.faces.push_back({Kind::tri, {number(i, k), number(i + 1, k + 1), number(i, k + 1), 0}});
+    }
+  }
+  return mesh;
+}
+
+Mesh lump(int n, double size) {
+  Mesh mesh = make_sphere(1, n);
+  mesh.name = "lump";
+  for (Vec3d& v : mesh.vertices) v *= size * (1 + 0.15 * std::sin(5 * v.x()) * std::cos(4 * v.y()));
+  return mesh;
+}
+
 }  // namespace
+
+std::vector<MeshPair> nested_pairs() {
+  return {{"spheres", make_sphere(1, 32), make_sphere(1.125, 32), false},
+          {"lumps", lump(32, 1), lump(32, 1.05), false},
+          {"tubes, same triangles", tube(60, 60, 1), tube(60, 60, 1.1), false},
+          {"shaft in bush", tube(60, 60, 1), tube(64, 50, 1.05), false},
+          {"part in housing", box({-0.5, -0.4, -0.3}, {1, 0.8, 0.6}, 24), make_sphere(0.75, 24), false}};
+}
 
 const char* name_of(FlushPlace place) {
   switch (place) {

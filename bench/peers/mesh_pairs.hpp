@@ -43,6 +43,11 @@ const char* name_of(FlushPlace place);
 std::vector<MeshPair> flush_pairs();
 PosePair flush_poses(FlushPlace place, std::mt19937_64& random);
 
+/// One surface inside another, apart all round: both in the same pose.
+/// Spheres and lumps with the same triangles, cylinders with the same and with other ones, a shaft in its bush with a
+/// clearance of 0.05, a part in its housing.
+std::vector<MeshPair> nested_pairs();
+
 /// Faces with more than three vertices, and all of them.
 std::string describe_faces(const Mesh& mesh);
 

@@ -296,6 +296,40 @@ TEST_CASE("distance: the interval is that of brute force", "[lib][distance]") {
   CHECK(apart > 150);
 }
 
+TEST_CASE("distance: nested surfaces, many pairs as near", "[lib][distance]") {
+  std::mt19937_64 random(sim::seed_from_environment() + 47);
+  std::uint64_t most_steps = 0;
+  for (const double size : {1.05, 1.2, 2.0}) {
+    for (const bool is_uneven : {false, true}) {
+      Mesh inner = make_sphere(1, 5);
+      if (is_uneven) {
+        for (Vec3d& v : inner.vertices) v *= 1 + 0.15 * std::sin(5 * v.x()) * std::cos(4 * v.y());
+      }
+      Mesh outer = inner;
+      for (Vec3d& v : outer.vertices) v *= size;
+      const Object a(inner);
+      const Object b(outer);
+      for (const bool is_turned : {false, true}) {
+        Pose pose = random_pose(PoseClass::rigid, 4, random);
+        if (!is_turned) pose.linear().setIdentity();
+        CAPTURE(size, is_uneven, is_turned, sim::seed_from_environment());
+        const DistanceBounds expected = least_distance(inner, pose, outer, pose);
+        const DistanceResult found = distance(a, pose, b, pose);
+        REQUIRE(found.lower == expected.lower);
+        REQUIRE(found.upper == expected.upper);
+        DistanceRequest rough;
+        rough.rel_error = 0.01;
+        const DistanceResult near = distance(b, pose, a, pose, rough);
+        REQUIRE(near.lower <= found.upper);
+        REQUIRE(near.upper >= found.lower);
+        REQUIRE(near.upper - near.lower <= 0.01 * near.upper);
+        most_steps = std::max(most_steps, found.stats.steps);
+      }
+    }
+  }
+  CHECK(most_steps > 500);  // long enough that slabs were asked
+}
+
 TEST_CASE("distance: faces and points are those of each object, not of the other", "[lib][distance]") {
   // Of the second object the last of three faces is the nearest, of the first the only one.
   Mesh one;
