@@ -108,6 +108,7 @@ test-lib: ## the C++ library, its command and some of its tests, without Verilat
 	for test in $(TESTS); do build/library/bin/$$test || exit 1; done
 
 test-long: build ## run the regression and the long tests
+	cmake --build $(RELEASE) -j $(JOBS) --target long_programs
 	$(CTEST) --test-dir $(RELEASE)
 
 formal: bootstrap venv ## proofs of streams, decoupler, slot and reset on configuration (tests/formal)

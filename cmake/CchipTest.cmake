@@ -43,3 +43,12 @@ function(cchip_add_program_test name)
     ${program} ${ARG_COMMAND})
   set_tests_properties(${name} PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT})
 endfunction()
+
+# cchip_long_programs(<target> ...): of tests with the label long alone, so only `make test-long` builds them.
+function(cchip_long_programs)
+  if(NOT TARGET long_programs)
+    add_custom_target(long_programs)
+  endif()
+  set_target_properties(${ARGN} PROPERTIES EXCLUDE_FROM_ALL TRUE)
+  add_dependencies(long_programs ${ARGN})
+endfunction()
