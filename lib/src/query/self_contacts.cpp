@@ -540,7 +540,7 @@ class SelfSearch {
     return (is(x[0]) | is(x[1]) | is(x[2]) | is(x[3])) != 0;  // without branches
   }
   static bool is_first(const Corners& x, std::size_t a) {
-    return std::find(x.begin(), x.begin() + a, x[a]) == x.begin() + a;
+    return (a < 1 || x[0] != x[a]) && (a < 2 || x[1] != x[a]) && (a < 3 || x[2] != x[a]);
   }
 
   /// Do neighbours meet elsewhere than in their common vertex or on their common edge?

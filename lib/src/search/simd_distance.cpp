@@ -257,12 +257,13 @@ HWY_INLINE Span span_of(const Point& axis, const Point& p, const Point& q, const
   return {hn::Min(hn::Min(at_p, at_q), hn::Min(at_r, at_s)), hn::Max(hn::Max(at_p, at_q), hn::Max(at_r, at_s))};
 }
 
-/// What an axis between nearest points proves of the hulls of four vertices each.
+/// What an axis of any length proves of the hulls of four vertices each.
 HWY_INLINE V4 proved_gap(const Point& axis, const std::array<Point, 4>& a, const std::array<Point, 4>& b, float slack) {
   const D4 d;
   const Span of_a = span_of(axis, a[0], a[1], a[2], a[3]);
   const Span of_b = span_of(axis, b[0], b[1], b[2], b[3]);
-  const V4 gap = hn::NegMulAdd(sum_of_sizes(axis), hn::Set(d, slack), hn::Sub(of_b.low, of_a.high));
+  const V4 between = hn::Max(hn::Sub(of_b.low, of_a.high), hn::Sub(of_a.low, of_b.high));
+  const V4 gap = hn::NegMulAdd(sum_of_sizes(axis), hn::Set(d, slack), between);
   const V4 length = hn::Sqrt(dot(axis, axis));
   const M4 proved = hn::And(hn::Gt(gap, hn::Zero(d)), hn::Gt(length, hn::Set(d, shortest_axis)));
   return hn::IfThenElseZero(proved, hn::Mul(hn::Div(gap, length), hn::Set(d, 1 - relative_slack)));
@@ -347,10 +348,15 @@ bool leaves(const DistanceFrame& frame, const float* vertices_a, NodeRef leaf_a,
       }
       Triangles p({points_a[0], points_a[1], points_a[2]});
       Triangles q({points_b[0], points_b[1], points_b[2]});
+      // Each lane's axis proves its bound for the whole faces; points of each are points of them.
+      const V4 along_normals = hn::Max(proved_gap(p.normal, points_a, points_b, frame.slack),
+                                       proved_gap(q.normal, points_a, points_b, frame.slack));
+      gaps.lower[2U * i + k] = hn::GetLane(hn::MaxOfLanes(d, along_normals));
+      gaps.upper[2U * i + k] = std::numeric_limits<float>::infinity();
+      if (gaps.lower[2U * i + k] > limit) continue;
       const Nearest best = nearest_of(p, q);
       const V4 lower = proved_gap(best.between, points_a, points_b, frame.slack);
-      // Each lane's axis proves its bound for the whole faces; points of each are points of them.
-      gaps.lower[2U * i + k] = hn::GetLane(hn::MaxOfLanes(d, lower));
+      gaps.lower[2U * i + k] = hn::GetLane(hn::MaxOfLanes(d, hn::Max(lower, along_normals)));
       gaps.upper[2U * i + k] = hn::GetLane(upper_of(hn::MinOfLanes(d, best.square)));
     }
   }

@@ -17,6 +17,7 @@
 
 #include "exact/ieee.hpp"
 #include "far_test.hpp"
+#include "frame_gap.hpp"
 #include "relative_pose.hpp"
 #include "search.hpp"
 #include "simd_boxes-inl.hpp"
@@ -26,6 +27,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace cchip {
 namespace HWY_NAMESPACE {
+
+/// Of simd_distance.cpp, for the same instruction set.
+bool leaves(const DistanceFrame& frame, const float* vertices_a, NodeRef leaf_a, const float* vertices_b,
+            NodeRef leaf_b, float limit, FaceGaps& gaps);
 
 /// Reads what the next steps need into the cache.
 HWY_INLINE void prefetch(const Task& task, Item item) {
@@ -142,6 +147,9 @@ class SimdSearch final : public Search {
       plain_->run(query, request, result);
       return false;
     }
+    task.query = query;
+    task.within = request.within;
+    task.world.is_made = false;
     task.faces.start(query, request, result);
     task.stats = {};
     task.stats.box_tests = 1;  // of the whole objects, above
@@ -261,6 +269,9 @@ class SimdSearch final : public Search {
   /// Tests the primitives of two leaves.
   /// \returns true if the request is fulfilled
   static HWY_INLINE bool test_leaves(Task& task, Item item) {
+    if (HWY_UNLIKELY(task.within > 0) && !item.moved.is_quad() && !item.fixed.is_quad()) {
+      return test_leaves_within(task, item);
+    }
     const Placement& place = task.place;
     alignas(64) LeafSide p;
     alignas(64) LeafSide q;
@@ -294,6 +305,44 @@ class SimdSearch final : public Search {
       }
       return task.faces.done();
     });
+  }
+
+  /// The same for triangles in a query within a distance.
+  static bool test_leaves_within(Task& task, Item item) {
+    if (!task.world.is_made) make_world(task);
+    const SupportTree& a = task.query.a->tree();
+    const SupportTree& b = task.query.b->tree();
+    const NodeRef leaf_a = task.swapped ? item.fixed : item.moved;
+    const NodeRef leaf_b = task.swapped ? item.moved : item.fixed;
+    task.stats.pairs += leaf_a.count() * leaf_b.count();
+    FaceGaps gaps;
+    if (!leaves(task.world.frame, a.vertices(leaf_a.first()), leaf_a, b.vertices(leaf_b.first()), leaf_b,
+                task.world.far, gaps)) {
+      return false;
+    }
+    for (std::uint32_t i = 0; i < leaf_a.count(); ++i) {
+      for (std::uint32_t k = 0; k < leaf_b.count(); ++k) {
+        const std::uint32_t face_a = a.faces()[leaf_a.first() + i];
+        const std::uint32_t face_b = b.faces()[leaf_b.first() + k];
+        if (gaps.lower[2 * i + k] > task.world.far) continue;
+        if (gaps.upper[2 * i + k] < task.world.near) {
+          task.faces.add(face_a, face_b);
+        } else {
+          task.swapped ? task.keep_open(face_b, face_a) : task.keep_open(face_a, face_b);
+        }
+        if (task.faces.done()) return true;
+      }
+    }
+    return false;
+  }
+
+  static void make_world(Task& task) {
+    const CollisionQuery& query = task.query;
+    FrameGap gap(*query.a, *query.pose_a, *query.b, *query.pose_b);
+    const double within = task.within / gap.in_single(task.world.frame);
+    task.world.near = static_cast<float>(std::min(within * (1 - 0x1p-20), 1e15));
+    task.world.far = static_cast<float>(std::min(within * (1 + 0x1p-20), 1e15));
+    task.world.is_made = true;
   }
 
   /// Calls `visit` for the pairs of up to two by two triangles that are not apart, until it returns true.

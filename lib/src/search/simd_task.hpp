@@ -11,6 +11,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "simd_distance.hpp"
+
 namespace cchip::simd {
 
 using bvh::NodeRef;
@@ -136,8 +138,19 @@ inline constexpr std::size_t stack_most = 15 * 2 * bvh::tree_depth_max + 16;
 /// hit.
 inline constexpr std::size_t open_most = 16;
 
+/// Faces in the world, for a query within a distance; made for its first pair of leaves.
+struct WithinFrame {
+  bool is_made;
+  DistanceFrame frame;
+  float near;  ///< a distance certainly within, in units of the frame
+  float far;   ///< one that certainly is not
+};
+
 /// One query on its way.
 struct Task {
+  CollisionQuery query;
+  double within;  ///< the distance that is asked for
+  WithinFrame world;
   Planes planes;
   Placement place;
   const SupportTree* moved;
