@@ -4,8 +4,8 @@
 
     campaign.py CHECKED CCHIP N [EVERY]
 
-CHECKED: the program cchip-checked; CCHIP: the command cchip. N certificates are made, and each is changed once. Every EVERY-th
-case (100) also goes to `cchip check`, which is a process for each. CCHIP_SEED repeats a run."""
+CHECKED: the program cchip-checked; CCHIP: the command cchip. N certificates are made, and each is changed once. Every
+EVERY-th case (100) also goes to `cchip check`, which is a process for each. CCHIP_SEED repeats a run."""
 import json
 import os
 import pathlib
@@ -30,7 +30,8 @@ def random_mesh(rng):
     for _ in range(rng.randint(1, 7)):
         first = len(vertices)
         p, u, v = ([grid(n) for _ in range(3)] for n in (3, 2, 2))
-        corners = [p, [a + b for a, b in zip(p, u)], [a + b + c for a, b, c in zip(p, u, v)], [a + c for a, c in zip(p, v)]]
+        corners = [p, [a + b for a, b in zip(p, u)], [a + b + c for a, b, c in zip(p, u, v)],
+                   [a + c for a, c in zip(p, v)]]
         if rng.random() < 0.2:
             corners[rng.randrange(4)][rng.randrange(3)] += grid(1)
         if rng.random() < 0.5:
@@ -48,7 +49,8 @@ def random_pose(rng, scale):
         rows = [[float(rng.randint(-1, 1)) for _ in range(3)] for _ in range(3)]
     else:
         rows = [[rng.uniform(-1, 1) for _ in range(3)] for _ in range(3)]
-    return [x for row in rows for x in row + [scale * (rng.randint(-4, 4) if rng.random() < 0.8 else rng.uniform(-4, 4))]]
+    return [x for row in rows for x in
+            row + [scale * (rng.randint(-4, 4) if rng.random() < 0.8 else rng.uniform(-4, 4))]]
 
 
 def write_off(path, mesh):
@@ -62,12 +64,15 @@ def change_value(rng, value):
     if isinstance(value, bool):
         return rng.choice([not value, None, int(value)])
     if isinstance(value, int):
-        return rng.choice([value + 1, value - 1, 0, -value, float(value), str(value), True, 2**32, 2**64, [value, value], [value, value + 1]])
+        return rng.choice([value + 1, value - 1, 0, -value, float(value), str(value), True, 2**32, 2**64,
+                           [value, value], [value, value + 1]])
     if isinstance(value, str):
         if value.lstrip("-").isdigit():
             n = int(value)
-            return rng.choice([str(n + 1), str(n - 1), str(-n), str(2 * n), "0", "1", "-0", "0" + value, "+" + value, value + "0", " " + value, n])
-        words = ["apart", "touching", "crossing", "split_a", "split_b", "separated", "meet", "touch", "cross", "a1", "a2", "a3", "b1", "b2", "b3", "a0", ""]
+            return rng.choice([str(n + 1), str(n - 1), str(-n), str(2 * n), "0", "1", "-0", "0" + value, "+" + value,
+                               value + "0", " " + value, n])
+        words = ["apart", "touching", "crossing", "split_a", "split_b", "separated", "meet", "touch", "cross", "a1",
+                 "a2", "a3", "b1", "b2", "b3", "a0", ""]
         return rng.choice([*words, value.upper(), None])
     if isinstance(value, list):
         value, kind = list(value), rng.randrange(6)
@@ -165,7 +170,8 @@ def accepted_by_python(data, meshes, poses):
 class Campaign:
     def __init__(self, checked, cchip, every, folder):
         self.checked, self.cchip, self.every, self.folder = checked, cchip, every, folder
-        self.cases, self.counts = [], {"certificates": 0, "changed": 0, "accepted": 0, "refused": 0, "cchip": 0, "differences": 0}
+        self.cases = []
+        self.counts = dict.fromkeys(["certificates", "changed", "accepted", "refused", "cchip", "differences"], 0)
 
     def add(self, names, meshes, pose, data, changed):
         path = self.folder / f"{len(self.cases)}.jsonl"
@@ -175,8 +181,10 @@ class Campaign:
 
     def compare(self):
         numbers = lambda pose: ",".join(map(repr, pose))
-        (self.folder / "list").write_text("".join("\t".join([*map(str, names), str(path), numbers(pose)]) + "\n" for names, pose, path, _, _ in self.cases))
-        run = subprocess.run([self.checked, "--batch", self.folder / "list"], stdout=subprocess.PIPE, text=True, check=True)
+        lines = ["\t".join([*map(str, names), str(path), numbers(pose)]) for names, pose, path, _, _ in self.cases]
+        (self.folder / "list").write_text("".join(line + "\n" for line in lines))
+        run = subprocess.run([self.checked, "--batch", self.folder / "list"], stdout=subprocess.PIPE, text=True,
+                             check=True)
         verdicts = run.stdout.splitlines()
         assert len(verdicts) == len(self.cases), "a verdict for each case"
         for n, ((names, pose, path, changed, python), verdict) in enumerate(zip(self.cases, verdicts)):
@@ -193,7 +201,8 @@ class Campaign:
             self.counts["accepted" if python else "refused"] += 1
             if len(set(answers.values())) != 1 or (not changed and not python):
                 self.counts["differences"] += 1
-                print(f"{answers}, {verdict}, pose {pose}\n{names[0].read_text()}{names[1].read_text()}{path.read_bytes()!r}")
+                print(f"{answers}, {verdict}, pose {pose}\n"
+                      f"{names[0].read_text()}{names[1].read_text()}{path.read_bytes()!r}")
         self.cases = []
 
 
@@ -212,9 +221,12 @@ def main(checked, cchip, count, every="100"):
                 write_off(name, mesh)
             scale = rng.choice([abs(x) or 1.0 for x in meshes[0][0][0]])
             poses = [random_pose(rng, scale / 2) for _ in range(min(20, count - campaign.counts["certificates"]))]
-            (folder / "poses.csv").write_text("\n".join([",".join(COLUMNS), *(",".join(map(repr, p)) for p in poses)]) + "\n")
-            options = ["--contacts", rng.choice(["first", "all"]), *rng.choice([[], ["--relation"], ["--counts", "crossing"]])]
-            command = [cchip, "collide", *names, "--poses", folder / "poses.csv", *options, "--certificate", folder / "made"]
+            rows = [",".join(COLUMNS), *(",".join(map(repr, p)) for p in poses)]
+            (folder / "poses.csv").write_text("\n".join(rows) + "\n")
+            options = ["--contacts", rng.choice(["first", "all"]),
+                       *rng.choice([[], ["--relation"], ["--counts", "crossing"]])]
+            command = [cchip, "collide", *names, "--poses", folder / "poses.csv", *options,
+                       "--certificate", folder / "made"]
             run = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
             if run.returncode != 0:
                 sys.exit(f"{command}: exit code {run.returncode}\n{run.stderr}")

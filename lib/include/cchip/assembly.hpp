@@ -114,8 +114,8 @@ struct AssemblyLoadOptions {
 /// as the file, in the coordinates of the assembly; an OBJ, in which each `o` is a part; a glTF or GLB, in which each
 /// node with triangles of the chosen scene is one, named by the path of nodes, in metres; a 3MF, in which each mesh
 /// that its build places is one, in its unit; or a URDF, in which each link with collision shapes is one, in metres. A
-/// name that is there already gets a number: "bolt", "bolt#2". Each mesh is read and built once. \throws
-/// std::runtime_error one line: file, line if it has one, what is wrong, what to do. Fewer than two parts and a
+/// name that is there already gets a number: "bolt", "bolt#2". Each mesh is read and built once.
+/// \throws std::runtime_error one line: file, line if it has one, what is wrong, what to do. Fewer than two parts and a
 ///         part without a face are errors, too.
 Assembly load_assembly(const std::string& path, const AssemblyLoadOptions& options = {});
 
