@@ -20,6 +20,7 @@ class FineFilter {
 
   /// Rounded.
   double value() const { return high_; }
+  double error() const { return error_; }
   /// Is its sign?
   bool is_known() const { return std::abs(high_) * (1 - 0x1p-50) > error_ || (high_ == 0 && error_ == 0); }
   /// 0 also if it is not known.

@@ -501,6 +501,18 @@ Vec<FineFilter> fine_filters_of(const Vec<BigInt>& normal) {
           fine_filter_of(normal[2], exponent)};
 }
 
+/// Is each component known to far less than the rounding of the greatest one? Edges that are nearly parallel lose
+/// digits.
+bool is_precise(const Vec<FineFilter>& normal) {
+  double greatest = 0;
+  double error = 0;
+  for (const FineFilter& x : normal) {
+    greatest = std::max(greatest, std::abs(x.value()));
+    error = std::max(error, x.error());
+  }
+  return error <= 0x1p-60 * greatest;
+}
+
 std::array<Vec3d, 3> points_of(const Primitive& p, const Feature& feature) {
   return {p.v[feature.at[0]], p.v[feature.at[feature.count > 1 ? 1 : 0]], p.v[feature.at[feature.count > 2 ? 2 : 0]]};
 }
@@ -528,8 +540,8 @@ bool HalfSpace::contains(const Vec3d& v) const {
       return true;
     }
   }
-  // Components of the normal and differences are off by 2^-50 of themselves and by what underflows, products and sums
-  // by a few 2^-53.
+  // Components of the normal are off by 2^-50 of the greatest, which is below 1; differences, products and sums by a
+  // few 2^-53 and by what underflows.
   const Vec3d between = v - through();
   const double rounded = rounded_.dot(between);
   if (std::abs(rounded) > 0x1p-47 * between.cwiseAbs().sum() + 0x1p-1000) return rounded < 0;
@@ -566,7 +578,13 @@ bool HalfSpace::contains(const Primitive& p) const {
 NearestPlanes::NearestPlanes(const PosedDistances& distances, const Primitive& a, const Primitive& b) {
   const PosedDistances::Pair pair(distances, a, b);
   const std::optional<PosedDistances::Pair::Fine> fine = pair.fine();
-  if (!fine) {
+  Vec<FineFilter> normal_a;
+  Vec<FineFilter> normal_b;
+  if (fine) {
+    normal_a = in_frame(distances.pose_a_.linear(), fine->normal);
+    normal_b = in_frame(distances.pose_b_.linear(), {-fine->normal[0], -fine->normal[1], -fine->normal[2]});
+  }
+  if (!fine || !is_precise(normal_a) || !is_precise(normal_b)) {
     make_exactly(distances, a, b);
     return;
   }
@@ -576,10 +594,9 @@ NearestPlanes::NearestPlanes(const PosedDistances& distances, const Primitive& a
     const PosedDistances::Pair::Integers integers = PosedDistances::Pair(distances, a, b).integers(0);
     return in_frame(pose.linear(), between_features(integers.a, integers.b, features_of_both), sign);
   };
-  a_ = HalfSpace(in_frame(distances.pose_a_.linear(), fine->normal), points_of(a, features[features_of_both.a]),
+  a_ = HalfSpace(normal_a, points_of(a, features[features_of_both.a]),
                  [&distances, exact] { return exact(distances.pose_a_, 1); });
-  const Vec<FineFilter> back = {-fine->normal[0], -fine->normal[1], -fine->normal[2]};
-  b_ = HalfSpace(in_frame(distances.pose_b_.linear(), back), points_of(b, features[features_of_both.b]),
+  b_ = HalfSpace(normal_b, points_of(b, features[features_of_both.b]),
                  [&distances, exact] { return exact(distances.pose_b_, -1); });
 }
 
