@@ -20,7 +20,7 @@ QUAD_LEAVES ?= build/leaves/BLEND/Suzanne_248.blend.obj
 # more options of campaign-leaves, as --eta 2
 LEAF_ARGS ?=
 
-.PHONY: list release docs-layout peers robots sim-reconfig sim-traverse wave-of formal-all mutants test-gates test-debug test-asan test-arm64 cross-windows fuzz-tools fuzz campaign-build campaign campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-cluster campaign-chip campaign-chip-faults campaign-chip-swaps proof proof-campaign picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot coverage coverage-bins coverage-cpp bench-certificate bench-scene sdist test-sdist bench-python test-dask test-ply bench-chip fpga fpga-sweep fpga-quick asic asic-quick tidy deb
+.PHONY: list release docs-layout peers robots sim-reconfig sim-traverse wave-of formal-all mutants probes test-gates test-debug test-asan test-arm64 cross-windows fuzz-tools fuzz campaign-build campaign campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-cluster campaign-chip campaign-chip-faults campaign-chip-swaps proof proof-campaign picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot coverage coverage-bins coverage-cpp bench-certificate bench-scene sdist test-sdist bench-python test-dask test-ply bench-chip fpga fpga-sweep fpga-quick asic asic-quick tidy deb
 
 define RUN_GROUPS
 Try it
@@ -30,7 +30,7 @@ Use the library
 Read
   docs-layout/3_min
 Check a change
-  proof wave-of test-sdist test-dask test-ply test-debug test-asan test-arm64 cross-windows test-gates fuzz tidy
+  proof probes wave-of test-sdist test-dask test-ply test-debug test-asan test-arm64 cross-windows test-gates fuzz tidy
 Check for long
   formal-all/hours mutants/hours coverage/hours coverage-bins coverage-cpp
   campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-collide campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
@@ -90,6 +90,9 @@ formal-all: bootstrap venv ## every proof and every mutant of tests/formal; writ
 mutants: $(RELEASE)/build.ninja ## wrong versions of every RTL module, and how many of them its unit tests find; MUTANTS_ARGS="--shard I/N" for one part of N
 	cmake --build $(RELEASE) -j $(JOBS) --target unit_tests
 	scripts/mutants.py --jobs $(JOBS) $(MUTANTS_ARGS)
+
+probes: ## each check of texts, RTL and programs on a copy with one deliberate fault, on which it must fail (PROBES_ARGS="--slow" adds the proof; tools that are missing are skipped)
+	tests/probes/run.py --programs $(RELEASE)/bin $(PROBES_ARGS)
 
 test-gates: $(RELEASE)/build.ninja ## netlists for Lattice ECP5 and Xilinx 7: proved equal to the RTL, or simulated on 10^4 pairs
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_pair_vectors
