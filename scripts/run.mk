@@ -91,7 +91,7 @@ mutants: $(RELEASE)/build.ninja ## wrong versions of every RTL module, and how m
 	cmake --build $(RELEASE) -j $(JOBS) --target unit_tests
 	scripts/mutants.py --jobs $(JOBS) $(MUTANTS_ARGS)
 
-probes: ## each check of texts, RTL and programs on a copy with one deliberate fault, on which it must fail (PROBES_ARGS="--slow" adds the proof; tools that are missing are skipped)
+probes: ## each check of texts, RTL and programs on a copy with one deliberate fault, on which it must fail (PROBES_ARGS="--slow" adds widths and the proof; tools that are missing are skipped)
 	tests/probes/run.py --programs $(RELEASE)/bin $(PROBES_ARGS)
 
 test-gates: $(RELEASE)/build.ninja ## netlists for Lattice ECP5 and Xilinx 7: proved equal to the RTL, or simulated on 10^4 pairs

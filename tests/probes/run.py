@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Gates that can fail: each check of the table PROBES runs on a copy of the tree, where it must pass, and again with one
-deliberate fault, where it must exit with another code than 0 and print a line that names the fault.
+"""Gates that can fail: each check of the table PROBES runs on a copy of the tree, where it must pass, and again
+with
+one deliberate fault, where it must exit with another code than 0 and print a line that names the fault.
 
 usage: run.py [options] [NAME...]     NAME: a probe (default: all that are not slow)
   --slow       those of minutes, too
@@ -101,8 +102,8 @@ PROBES = [
           "python3 -B tests/docs/check_workflow.py .", "make tests-of-all: no such target"),
     Probe("version", "CITATION.cff", "version: 0.2.0", "version: 0.1.9", "python3 -B tests/docs/check_version.py .",
           r"CITATION\.cff"),
-    Probe("proofs", "docs/develop/formal.md", "| [cchip_skid_buffer](", "| (", "python3 -B tests/docs/check_proofs.py .",
-          "cchip_skid_buffer is not listed"),
+    Probe("proofs", "docs/develop/formal.md", "| [cchip_skid_buffer](", "| (",
+          "python3 -B tests/docs/check_proofs.py .", "cchip_skid_buffer is not listed"),
     Probe("formal_table", "docs/develop/formal.md", "| [cchip_skid_buffer](", "| [cchip_skid](",
           "tests/formal/run.py --check", r"formal\.md|cchip_skid"),
     Probe("arrows", "lib/src/tree/dop26.cpp", '#include "rounding.hpp"', '#include <cchip/internal/driver/probe.hpp>',
@@ -114,7 +115,7 @@ PROBES = [
     Probe("fpga_tables", "docs/hardware/fpga.md", "<!-- generated: begin classes -->\n",
           "<!-- generated: begin classes -->\n| of no file |\n", "scripts/fpga.py --check", "classes|of no file"),
     Probe("widths", "rtl/bvtest/cchip_bv_lane_a.v", ": p[30:16];", ": {p[29], p[29:16]};",
-          "scripts/widths.py --module cchip_bv_lane_a", "needs 31 bits, has 30"),
+          "scripts/widths.py --module cchip_bv_lane_a", "needs 31 bits, has 30", slow=True),
     Probe("tutorial", "docs/cpp/distance.md", "there.translation().x() = 1.9", "there.translation().x() = 1.8",
           "python3 -B tests/docs/check_tutorial.py docs/cpp/distance.md "
           "examples/distance.cpp {bin}/example_distance", "distance", ("example_distance",)),
@@ -130,7 +131,9 @@ PROBES = [
           r"bracket.*second|second.*bracket|overlap", ("cchip",), ("examples/meshes",),
           "printf 'unit = \"mm\"\\n[[part]]\\nname = \"first\"\\nfile = \"examples/meshes/bracket.obj\"\\n[[part]]\\n"
           "name = \"second\"\\nfile = \"examples/meshes/bracket.obj\"\\nxyz = [9, 0, 0]\\n' > assembly.toml"),
-    Probe("export_bench", "export/cchip_primtest_tri_tri/vectors.hex", "012c01c00000d1b4684967380001", "012c01c00000d1b4684967380000", "cd export/cchip_primtest_tri_tri && "
+    Probe("export_bench", "export/cchip_primtest_tri_tri/vectors.hex",
+          "012c01c00000d1b4684967380001", "012c01c00000d1b4684967380000",
+          "cd export/cchip_primtest_tri_tri && "
           "iverilog -g2005 -DCCHIP_BENCH_TOP=cchip_primtest_tri_tri -s bench_primtest -o bench.vvp bench_primtest.v "
           "cchip_primtest_tri_tri.v && vvp -n bench.vvp +vectors=vectors.hex +pairs=20 | tee log; grep -q ^PASS log",
           "^FAIL clock", ("cchip_pair_vectors",), (),
