@@ -36,10 +36,13 @@ module cchip_icap #(
 
   localparam [31:0] REST = PAUSE;
 
-  function [31:0] reversed(input [31:0] word);
-    integer i;
-    for (i = 0; i < 32; i = i + 1) reversed[i] = word[31-i];
-  endfunction
+  wire [31:0] reversed;
+  genvar i;
+  generate
+    for (i = 0; i < 32; i = i + 1) begin : gen_reversed
+      assign reversed[i] = cfg_data[31-i];
+    end
+  endgenerate
 
   wire avail, prerror;
   wire [31:0] status;
@@ -49,7 +52,7 @@ module cchip_icap #(
   reg [15:0] pause_q;
 
   always @(posedge clk) begin
-    if (cfg_valid) data_q <= reversed(cfg_data);
+    if (cfg_valid) data_q <= reversed;
     avail_q <= avail;
     // 7 series: status bit 7 is CFGERR_B
     bad_q   <= FAMILY == 7 ? ~status[7] : prerror;

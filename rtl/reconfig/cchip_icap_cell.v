@@ -23,16 +23,18 @@ module cchip_icap_cell #(
 
   localparam [31:0] SYNC = 32'hAA995566, WRITE_CMD = 32'h30008001, DESYNC = 32'h0000000D;
 
-  function [31:0] unswapped(input [31:0] word);
-    integer k;
-    for (k = 0; k < 32; k = k + 1) unswapped[k] = word[(k/8)*8+7-k%8];
-  endfunction
+  wire [31:0] word;
+  genvar k;
+  generate
+    for (k = 0; k < 32; k = k + 1) begin : gen_unswapped
+      assign word[k] = i[(k/8)*8+7-k%8];
+    end
+  endgenerate
 
   reg aligned_q, error_q, command_q;
   initial {aligned_q, error_q, command_q} = 3'd0;
   reg [26:0] left_q;  // words of the packet in progress
   initial left_q = 27'd0;
-  wire [31:0] word = unswapped(i);
   wire [2:0] kind = word[31:29];  // 1: a packet of up to 2047 words, 2: a long one
 
   always @(posedge clk)

@@ -14,6 +14,8 @@ ALLOWED = {"along.cpp", "behind_plane.cpp", "certify.cpp", "common_part.cpp", "c
            "grid_oracle.cpp", "intersection.cpp", "meeting.cpp", "oracle.cpp", "pair_proof.cpp", "posed_distances.cpp",
            "shells.cpp", "solid_side.cpp", "solids.cpp"}
 
+INITIALISER = r"_GLOBAL__sub_I|__static_initialization_and_destruction|__cxx_global_var_init"
+
 nm, *libraries = sys.argv[1:]
 bad = []
 seen = 0
@@ -24,8 +26,7 @@ for library in libraries:
         if member:
             source = member.group(1)
             seen += 1
-        elif source not in ALLOWED and re.search(r"_GLOBAL__sub_I|__static_initialization_and_destruction|"
-                                                 r"__cxx_global_var_init", line):
+        elif re.search(INITIALISER, line) and source not in ALLOWED:
             bad.append(f"{library}: {source}: {line.split(maxsplit=2)[-1]}")
 if seen < len(libraries):
     sys.exit(f"static_initialisers.py: {seen} object files in {len(libraries)} libraries: is {nm} the right one?")
