@@ -39,12 +39,14 @@ class Input {
 std::string claim_in_words(const Certificate& c) {
   std::string words;
   if (!c.all) {
-    words = fmt::format("face {} of A meets face {} of B", c.contacts[0].face_a, c.contacts[0].face_b);
+    words = fmt::format("face {} of A {} face {} of B", c.contacts[0].face_a, c.within > 0 ? "is near" : "meets",
+                        c.contacts[0].face_b);
   } else if (c.contacts.empty()) {
     words = "no contacts";
   } else {
     words = fmt::format("{} contact{} and no others", c.contacts.size(), c.contacts.size() == 1 ? "" : "s");
   }
+  if (c.within > 0) words += fmt::format(", {} {}", c.below ? "nearer than" : "within", c.within);
   if (c.relation) {
     words += *c.relation == Relation::apart      ? ", apart"
              : *c.relation == Relation::touching ? ", touching"

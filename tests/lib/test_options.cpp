@@ -60,7 +60,7 @@ struct Case {
 enum class Call { single, batch, scene };
 
 bool is_refused(const CollisionRequest& request) {
-  return request.max_contacts == 0 || (request.within > 0 && (request.tells_relation() || request.certificate));
+  return request.max_contacts == 0 || (request.within > 0 && request.tells_relation());
 }
 
 CollisionResult ask(Call call, Device& device, const Case& c, const CollisionRequest& request,

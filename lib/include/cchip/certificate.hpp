@@ -31,10 +31,12 @@ struct CertificateCell {
   enum class Kind : std::uint8_t {
     split_a,  ///< the set of A in two: faces before `at` and from `at` on; the cells of the first follow, then the rest
     split_b,  ///< the same for the set of B
-    separated,  ///< along `direction`, every vertex of the set of A lies strictly below every vertex of the set of B
+    separated,  ///< along `direction`, every vertex of the set of A lies strictly below every vertex of the set of B;
+                ///< `within` asks for more, `along` for something else
     meet,       ///< one face each: they share a point, which both weights name
     touch,      ///< one face each: the same, and along `direction` no vertex of A lies above a vertex of B
-    cross       ///< one face each: the same with positive weights, and the edges of `span` span space
+    cross,      ///< one face each: the same with positive weights, and the edges of `span` span space
+    near        ///< one face each: a point of A and one of B, which the weights name, are as near as the claim says
   };
   /// An edge from the first vertex of a face to another one.
   struct Edge {
@@ -43,7 +45,7 @@ struct CertificateCell {
   };
   Kind kind = Kind::separated;
   std::uint32_t at = 0;  ///< of a split: place in Certificate::order_a or order_b
-  /// Of the kinds that name a point: numbers of the two faces in Mesh::faces.
+  /// Of the kinds that name points: numbers of the two faces in Mesh::faces.
   std::uint32_t face_a = 0;
   std::uint32_t face_b = 0;
   /// For each vertex of the face a weight of at least 0. The point is the sum of the weighted vertices, divided by the
@@ -61,9 +63,8 @@ struct Certificate {
     std::uint32_t face_b = 0;
     std::optional<Relation> relation = std::nullopt;  ///< touching or crossing, if the claim tells
   };
-  static constexpr int current_version = 1;
-
-  int version = current_version;
+  /// 2 of claims with `within` or `along`, 1 of others.
+  int version = 1;
   std::uint64_t hash_a = 0;  ///< hash_mesh() of A
   std::uint64_t hash_b = 0;
   std::uint64_t hash_poses = 0;
@@ -73,6 +74,12 @@ struct Certificate {
   bool all = true;
   /// The least relation that makes a contact: touching or crossing.
   Relation least = Relation::touching;
+  /// Above 0: faces at most this far apart are contacts, in units of the world; `least` and relations tell nothing then.
+  double within = 0;
+  bool below = false;                ///< with `within`: only those nearer than that are contacts
+  /// There is no contact after any translation of B by a positive multiple of this, in the world. With `all` and
+  /// without contacts; nothing is said of the poses themselves, where the meshes may touch.
+  std::optional<Vec3d> along;
   std::optional<Relation> relation;  ///< of the two meshes, if the claim tells
   std::vector<Contact> contacts;     ///< ascending, none twice
 

@@ -20,6 +20,18 @@ Certificate certify(const CollisionQuery& query, const CollisionRequest& request
 /// \throws std::runtime_error the answer is wrong
 Certificate certify(const CollisionQuery& query, const CollisionRequest& request, const CollisionResult& answer);
 
+/// The proof that faces are nearer than `distance`: of one pair, or of all of them, and then that all others are at
+/// least so far apart. With Contacts::first and no such pair, of the latter alone.
+/// \throws std::invalid_argument the distance is not above 0 or not finite; check_query() refuses the query
+Certificate certify_below(const CollisionQuery& query, double distance,
+                          CollisionRequest::Contacts contacts = CollisionRequest::Contacts::first);
+
+/// The proof that no translation of B by a positive multiple of `along` leaves a face of B in contact with one of A;
+/// nothing if one does. In the poses themselves they may touch. Of solids that a long translation parts it follows that
+/// they share no volume.
+/// \throws std::invalid_argument `along` is 0 or not finite; check_query() refuses the query
+std::optional<Certificate> certify_clear_along(const CollisionQuery& query, const Vec3d& along);
+
 /// What devices do with a result if the request is for a certificate: fills CollisionResult::certificate.
 /// \throws as certify()
 void add_certificate(const CollisionQuery& query, const CollisionRequest& request, CollisionResult& answer);

@@ -26,6 +26,9 @@ namespace certificate_check {
 struct Checker {
   std::array<const Mesh*, 2> mesh;
   std::array<std::vector<Point>, 2> points;
+  Int within = 0;  ///< in their unit
+  bool below = false;
+  std::optional<Point> along = std::nullopt;  ///< times any power of two
 
   const Point& corner(std::size_t side, std::uint32_t face, std::size_t k) const {
     return points[side][mesh[side]->faces[face].vertex[k]];
@@ -47,6 +50,19 @@ struct Checker {
       for_each_vertex(side, faces[side], take);
     }
     return *end[0] - *end[1];
+  }
+
+  /// Does the direction keep the faces of A below those of B, as the claim wants it?
+  bool separates(const std::vector<Digits>& direction, const std::array<std::vector<std::uint32_t>, 2>& faces) const {
+    const Int gap = -overlap(direction, faces);
+    const std::vector<Int> d = integers(direction, 3);
+    if (along) {
+      const Int rise = dot(d, *along);
+      return gap > 0 ? rise >= 0 : gap == 0 && rise > 0;
+    }
+    if (gap <= 0 || within == 0) return gap > 0;
+    const Int least = within * within * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    return below ? gap * gap >= least : gap * gap > least;
   }
 
   /// Calls `take` for the vertices of the faces: for each once, if there are many faces.
@@ -78,8 +94,17 @@ struct Checker {
       }
       require(total[side] > 0, "all weights are 0");
     }
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      require(sum[0][axis] * total[1] == sum[1][axis] * total[0], "the points differ");
+    Int square = 0;  // of the distance of the points, times both totals
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Int difference = sum[0][axis] * total[1] - sum[1][axis] * total[0];
+      square += difference * difference;
+    }
+    if (cell.kind == CellKind::near) {
+      const Int most = within * total[0] * total[1];
+      require(below ? square < most * most : square <= most * most, "the points are too far apart");
+      return;
+    }
+    require(square == 0, "the points differ");
     if (cell.kind == CellKind::touch)
       require(overlap(cell.direction, {{{face[0]}, {face[1]}}}) <= 0, "A is not below B");
     if (cell.kind != CellKind::cross) return;
@@ -109,10 +134,17 @@ inline CertificateVerdict check_certificate(const Mesh& a, const Pose& pose_a, c
   const char* const other_contacts = "other contacts than claimed";
   std::size_t number = 0;
   try {
-    require(c.version == Certificate::current_version, "unknown version");
+    require(c.version == (c.within > 0 || c.along ? 2 : 1), "unknown version");
     for (const Mesh* m : {&a, &b})
       require(m->file_face.empty() || m->file_face.size() == m->faces.size(), "a broken mesh");
-    const Checker checker = {{&a, &b}, place({&a, &b}, {&pose_a, &pose_b})};
+    require(c.within >= 0 && std::isfinite(c.within) && (c.within > 0 || !c.below), "no distance");
+    Placed placed = place({&a, &b}, {&pose_a, &pose_b}, c.within);
+    Checker checker = {{&a, &b}, std::move(placed.points), std::move(placed.length), c.below};
+    if (c.along) {
+      require(c.all && c.contacts.empty() && !c.relation && c.within == 0, "no claim of a translation");
+      checker.along = whole_point(*c.along);
+      require(*checker.along != Point{0, 0, 0}, "the translation is 0");
+    }
     require(c.hash_a == hash_mesh(a) && c.hash_b == hash_mesh(b), "the certificate is of other meshes");
     require(c.hash_poses == hash_poses(pose_a, pose_b), "the certificate is of other poses");
     // Of two faces of the files: kinds of the cells that name a point of their parts.
@@ -147,11 +179,12 @@ inline CertificateVerdict check_certificate(const Mesh& a, const Pose& pose_a, c
         require(c.all, "a claim of one contact needs a point");
         const auto in_a = c.order_a.begin(), in_b = c.order_b.begin();
         const auto at = [](std::size_t i) { return static_cast<std::ptrdiff_t>(i); };
-        require(checker.overlap(cell.direction, {{{in_a + at(sets[0][0]), in_a + at(sets[0][1])},
-                                                  {in_b + at(sets[1][0]), in_b + at(sets[1][1])}}}) < 0,
-                "A is not strictly below B");
+        require(checker.separates(cell.direction, {{{in_a + at(sets[0][0]), in_a + at(sets[0][1])},
+                                                    {in_b + at(sets[1][0]), in_b + at(sets[1][1])}}}),
+                c.within > 0 ? "A is not far enough below B" : "A is not strictly below B");
       } else {
-        require(cell.kind <= CellKind::cross, "unknown kind of cell");
+        require(cell.kind <= CellKind::near && (cell.kind == CellKind::near) == (c.within > 0) && !c.along,
+                "unknown kind of cell");
         const bool single = sets[0][1] - sets[0][0] == 1 && sets[1][1] - sets[1][0] == 1;
         require(!c.all || (single && cell.face_a == c.order_a[sets[0][0]] && cell.face_b == c.order_b[sets[1][0]]),
                 "the point of other faces");
@@ -162,12 +195,14 @@ inline CertificateVerdict check_certificate(const Mesh& a, const Pose& pose_a, c
     }
     require(open.empty(), "cells are missing");
     Relation strongest = Relation::apart;
-    bool all_told = c.all;
-    require(c.least == Relation::touching || c.least == Relation::crossing, "unknown kind of contacts");
+    bool all_told = c.all && c.version == 1;
+    require(c.least == Relation::touching || (c.least == Relation::crossing && c.version == 1),
+            "unknown kind of contacts");
     auto claimed = c.contacts.begin();
     for (const auto& [faces, kinds] : found) {
       const Relation relation = kinds.count(CellKind::cross) != 0 ? Relation::crossing : Relation::touching;
-      const bool told = relation == Relation::crossing || (c.all && kinds.count(CellKind::meet) == 0);
+      const bool told =
+          c.within == 0 && (relation == Relation::crossing || (c.all && kinds.count(CellKind::meet) == 0));
       strongest = std::max(strongest, relation);
       all_told = all_told && told;
       require(told || c.least == Relation::touching, "not told whether two faces cross");

@@ -1930,8 +1930,7 @@ relation: tell touching from crossing; fills Result.relation and Result.crossing
 least: what faces must do at least to be a contact: 'touching', share a point; or 'crossing', cross.
 device: by default one thread of the CPU, one for each calling thread.
 certificate: prove the answer; fills Result.certificate. Takes far longer than the answer.
-within: faces at most so far apart, in units of the world, are contacts; exactly. Leave relation, least and certificate
-then.
+within: faces at most so far apart, in units of the world, are contacts; exactly. Leave relation and least then.
 hint: the Result of the query before, about the same objects a moment earlier: the CPU tests the faces of its first
 contact first, and is done if they touch. It never changes whether there is a contact.
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cchip/certificate_file.hpp>
+#include <cchip/internal/geometry/decimal.hpp>
 #include <cstddef>
 #include <istream>
 #include <numeric>
@@ -13,7 +14,8 @@ namespace cchip {
 namespace {
 
 using CellKind = CertificateCell::Kind;
-constexpr std::array<const char*, 6> kind_names = {"split_a", "split_b", "separated", "meet", "touch", "cross"};
+constexpr std::array<const char*, 7> kind_names = {"split_a", "split_b", "separated", "meet",
+                                                   "touch",   "cross",   "near"};
 constexpr std::array<const char*, 3> relation_names = {"apart", "touching", "crossing"};
 
 std::string hash_text(std::uint64_t hash) {
@@ -61,6 +63,11 @@ void write_certificate(const Certificate& certificate, std::ostream& out) {
   std::string text = "{\"collisionchip_certificate\":" + std::to_string(c.version);
   text += ",\"mesh_a\":" + hash_text(c.hash_a) + ",\"mesh_b\":" + hash_text(c.hash_b);
   text += ",\"poses\":" + hash_text(c.hash_poses) + ",\"all\":" + (c.all ? "true" : "false");
+  if (c.within > 0) text += (c.below ? ",\"below\":" : ",\"within\":") + decimal_text(c.within);
+  if (c.along) {
+    for (int i = 0; i < 3; ++i) text += (i == 0 ? ",\"along\":[" : ",") + decimal_text((*c.along)[i]);
+    text += ']';
+  }
   text += ",\"least\":" + relation_text(c.least) + ",\"relation\":" + relation_text(c.relation) + ",\"contacts\":[";
   const char* comma = "";
   for (const Certificate::Contact& contact : c.contacts) {
@@ -183,13 +190,30 @@ std::uint64_t hash(const json& value) {
 Certificate read_claim(const json& line) {
   Certificate c;
   const json& version = line.at("collisionchip_certificate");
-  require(version.is_number_unsigned() && version == Certificate::current_version,
-          "no certificate, or another version of it");
+  require(version.is_number_unsigned() && (version == 1 || version == 2), "no certificate, or another version of it");
+  c.version = version.get<int>();
   c.hash_a = hash(line.at("mesh_a"));
   c.hash_b = hash(line.at("mesh_b"));
   c.hash_poses = hash(line.at("poses"));
   c.all = line.at("all").get<bool>();
   c.least = static_cast<Relation>(index_of(relation_names, line.at("least")));
+  for (const bool below : {false, true}) {
+    const char* const key = below ? "below" : "within";
+    if (!line.contains(key)) continue;
+    require(c.within == 0 && line.at(key).is_number(), "no distance, or two");
+    c.within = line.at(key).get<double>();
+    c.below = below;
+    require(c.within > 0, "a distance is above 0");
+  }
+  if (line.contains("along")) {
+    const json& along = line.at("along");
+    require(along.is_array() && along.size() == 3, "a translation has three numbers");
+    c.along = Vec3d::Zero();
+    for (int i = 0; i < 3; ++i) {
+      require(along[static_cast<std::size_t>(i)].is_number(), "a translation has three numbers");
+      (*c.along)[i] = along[static_cast<std::size_t>(i)].get<double>();
+    }
+  }
   c.relation = relation(line.at("relation"));
   require(line.at("contacts").is_array(), "contacts are no list");
   for (const json& contact : line.at("contacts")) {

@@ -3,6 +3,7 @@
 #include <cchip/certify.hpp>
 #include <cchip/check.hpp>
 #include <cchip/internal/exact/posed_pairs.hpp>
+#include <cchip/internal/geometry/decimal.hpp>
 #include <cchip/internal/judge/face_pairs.hpp>
 #include <cchip/internal/judge/near_parts.hpp>
 #include <cchip/internal/tree/dop26.hpp>
@@ -142,9 +143,15 @@ std::vector<Digits> digits(const std::array<int, 3>& d, int sign) {
 
 class Maker {
  public:
-  Maker(const CollisionQuery& query, const CollisionRequest& request)
-      : query_(query), request_(request), checker_{{&query.a->mesh(), &query.b->mesh()}, {}} {
-    checker_.points = certificate_check::place(checker_.mesh, {query.pose_a, query.pose_b});
+  Maker(const CollisionQuery& query, const CollisionRequest& request, bool below)
+      : query_(query), request_(request), checker_{{&query.a->mesh(), &query.b->mesh()}, {}, 0, below} {
+    certificate_check::Placed placed =
+        certificate_check::place(checker_.mesh, {query.pose_a, query.pose_b}, request.within);
+    checker_.points = std::move(placed.points);
+    checker_.within = std::move(placed.length);
+    certificate_.within = request.within;
+    certificate_.below = below;
+    certificate_.version = request.within > 0 ? 2 : 1;
     certificate_.hash_a = hash_mesh(*checker_.mesh[0]);
     certificate_.hash_b = hash_mesh(*checker_.mesh[1]);
     certificate_.hash_poses = hash_poses(*query.pose_a, *query.pose_b);
@@ -156,15 +163,27 @@ class Maker {
     const PosedPairs pairs(*query_.pose_a, *query_.pose_b);
     std::optional<Certificate> proof;
     any_near_parts(query_, contact, [&](std::uint32_t face_a, std::uint32_t face_b) {
-      const Primitive a = query_.a->mesh().primitive(face_a);
-      const Primitive b = query_.b->mesh().primitive(face_b);
-      const PosedPairs::Answer met = pairs.decide(a, b, request_.tells_relation());
-      if (request_.tells_relation() ? !met.crosses : !met.hit) return false;
+      if (request_.within == 0) {
+        const Primitive a = query_.a->mesh().primitive(face_a);
+        const Primitive b = query_.b->mesh().primitive(face_b);
+        const PosedPairs::Answer met = pairs.decide(a, b, request_.tells_relation());
+        if (request_.tells_relation() ? !met.crosses : !met.hit) return false;
+      }
       const CertificateCell cell = pair(face_a, face_b);
       if (ends_search(cell)) proof = one_contact(cell);
       return proof.has_value();
     });
     return proof;
+  }
+
+  /// The proof that B is clear of A along a translation, if it is.
+  std::optional<Certificate> prove_clear_along(const Vec3d& along) {
+    certificate_.along = along;
+    certificate_.version = 2;
+    checker_.along = certificate_check::whole_point(along);
+    Certificate certificate = search();
+    if (is_blocked_) return std::nullopt;
+    return certificate;
   }
 
   Certificate search() {
@@ -173,7 +192,10 @@ class Maker {
     trees_[0] = Tree(*checker_.mesh[0], std::move(points[0]), directions);
     trees_[1] = Tree(*checker_.mesh[1], std::move(points[1]), directions);
     directions_ = directions;
-    if (!descend(0, 0)) return one_contact(certificate_.cells.back());
+    for (std::size_t d = 0; d < direction_count; ++d) {
+      lengths_[d] = std::hypot(directions[d][0], directions[d][1], directions[d][2]);
+    }
+    if (!descend(0, 0)) return is_blocked_ ? Certificate() : one_contact(certificate_.cells.back());
     sort_undivided();
     certificate_.order_a = trees_[0].order;
     certificate_.order_b = trees_[1].order;
@@ -184,10 +206,12 @@ class Maker {
  private:
   bool ends_search(const CertificateCell& cell) const {
     return request_.contacts == CollisionRequest::Contacts::first &&
-           cell.kind == (request_.tells_relation() ? CellKind::cross : CellKind::meet);
+           cell.kind == (request_.within > 0         ? CellKind::near
+                         : request_.tells_relation() ? CellKind::cross
+                                                     : CellKind::meet);
   }
 
-  CertificateCell pair(std::uint32_t face_a, std::uint32_t face_b) const {
+  std::array<std::vector<Point>, 2> points_of(std::uint32_t face_a, std::uint32_t face_b) const {
     std::array<std::vector<Point>, 2> points;
     const std::array<std::uint32_t, 2> face = {face_a, face_b};
     for (const std::size_t side : {0U, 1U}) {
@@ -195,7 +219,17 @@ class Maker {
         points[side].push_back(checker_.corner(side, face[side], k));
       }
     }
-    CertificateCell cell = prove_pair(points[0], points[1], request_.tells_relation());
+    return points;
+  }
+  std::optional<CertificateCell> clear_pair(std::uint32_t face_a, std::uint32_t face_b) const {
+    const std::array<std::vector<Point>, 2> points = points_of(face_a, face_b);
+    return prove_clear(points[0], points[1], *checker_.along);
+  }
+  CertificateCell pair(std::uint32_t face_a, std::uint32_t face_b) const {
+    const std::array<std::vector<Point>, 2> points = points_of(face_a, face_b);
+    CertificateCell cell = request_.within > 0
+                               ? prove_distance(points[0], points[1], checker_.within, checker_.below)
+                               : prove_pair(points[0], points[1], request_.tells_relation());
     cell.face_a = face_a;
     cell.face_b = face_b;
     return cell;
@@ -249,7 +283,7 @@ class Maker {
   }
 
   /// Doubles close to the points, about a vertex of B, which candidates are chosen by; every one is checked exactly.
-  std::array<std::vector<Vec3d>, 2> rounded_points() const {
+  std::array<std::vector<Vec3d>, 2> rounded_points() {
     const Point& origin = checker_.corner(1, 0, 0);
     unsigned bits = 0;
     std::array<std::vector<Point>, 2> relative;
@@ -262,7 +296,9 @@ class Maker {
         }
       }
     }
+    if (checker_.within != 0) bits = std::max(bits, static_cast<unsigned>(msb(checker_.within)));
     const unsigned shift = bits > 500 ? bits - 500 : 0;  // such coordinates are doubles
+    within_ = Int(checker_.within >> shift).convert_to<double>();
     std::array<std::vector<Vec3d>, 2> result;
     for (const std::size_t side : {0U, 1U}) {
       for (Point& p : relative[side]) {
@@ -287,10 +323,12 @@ class Maker {
                                    std::max(std::abs(b.least[d]), std::abs(b.greatest[d])));
       for (const int sign : {1, -1}) {
         const double gap = sign > 0 ? b.least[d] - a.greatest[d] : a.least[d] - b.greatest[d];
-        if (!(gap > 0x1p-45 * size)) continue;  // closer ones are left to pairs of faces
+        const double least = within_ == 0 ? 0 : (1 + 0x1p-40) * within_ * lengths_[d];
+        // Closer ones are left to pairs of faces, but for those that are flush and part.
+        if (!(gap - least > (checker_.along ? -0x1p-45 : 0x1p-45) * size)) continue;
         CertificateCell cell;
         cell.direction = digits(directions_[d], sign);
-        if (checker_.overlap(cell.direction, {faces(trees_[0], a), faces(trees_[1], b)}) >= 0) continue;
+        if (!checker_.separates(cell.direction, {faces(trees_[0], a), faces(trees_[1], b)})) continue;
         certificate_.cells.push_back(std::move(cell));
         return true;
       }
@@ -305,6 +343,12 @@ class Maker {
     if (separate(a, b)) return true;
     const bool single_a = a.end - a.begin == 1;
     const bool single_b = b.end - b.begin == 1;
+    if (single_a && single_b && checker_.along) {
+      std::optional<CertificateCell> cell = clear_pair(trees_[0].order[a.begin], trees_[1].order[b.begin]);
+      is_blocked_ = !cell;
+      if (cell) certificate_.cells.push_back(*std::move(cell));
+      return !is_blocked_;
+    }
     if (single_a && single_b) {
       certificate_.cells.push_back(pair(trees_[0].order[a.begin], trees_[1].order[b.begin]));
       return !ends_search(certificate_.cells.back());
@@ -327,6 +371,9 @@ class Maker {
   CollisionRequest request_;
   certificate_check::Checker checker_;
   Directions directions_ = {};
+  std::array<double, direction_count> lengths_ = {};  ///< of the directions, about
+  bool is_blocked_ = false;                           ///< a search along a translation has met a pair of faces
+  double within_ = 0;                                 ///< of the claim, about, in the unit of the rounded points
   std::array<Tree, 2> trees_;
   Certificate certificate_;
 };
@@ -349,12 +396,29 @@ void check_request(const CollisionQuery& query, const CollisionRequest& request)
 
 Certificate certify(const CollisionQuery& query, const CollisionRequest& request) {
   check_request(query, request);
-  return Maker(query, request).search();
+  return Maker(query, request, false).search();
+}
+
+Certificate certify_below(const CollisionQuery& query, double distance, CollisionRequest::Contacts contacts) {
+  CollisionRequest request;
+  request.contacts = contacts;
+  request.within = distance;
+  if (!(distance > 0)) throw std::invalid_argument("certify_below: the distance is " + decimal_text(distance) + ": ask for one above 0");
+  check_request(query, request);
+  return Maker(query, request, true).search();
+}
+
+std::optional<Certificate> certify_clear_along(const CollisionQuery& query, const Vec3d& along) {
+  check_request(query, {});
+  if (along.isZero(0) || !along.allFinite()) {
+    throw std::invalid_argument("certify_clear_along: the translation is 0 or not finite: give another one");
+  }
+  return Maker(query, {}, false).prove_clear_along(along);
 }
 
 Certificate certify(const CollisionQuery& query, const CollisionRequest& request, const CollisionResult& answer) {
   check_request(query, request);
-  Maker maker(query, request);
+  Maker maker(query, request, false);
   const bool first = request.contacts == CollisionRequest::Contacts::first;
   if (first && answer.hit && !answer.contacts.empty() &&
       (!request.tells_relation() || answer.relation == Relation::crossing)) {

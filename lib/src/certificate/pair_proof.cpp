@@ -26,12 +26,14 @@ std::vector<Int> reduced(std::vector<Int> numbers) {
 }
 
 /// A linear programme for points w a_i of A and u b_j of B with weights w_i + t and u_j + t: both are the same point,
-/// the weights of either sum to 1, and t, the least of all, is as great as can be. w, u, t >= 0.
+/// the weights of either sum to 1, and t, the least of all, is as great as can be. w, u, t >= 0. Or, with a ray r, the
+/// point of B is moved by t r, and t is no part of the weights.
 /// The simplex method with Bland's rule, which ends, in integers: the table is multiplied by its last pivot, so all
 /// divisions are without remainder (J. Edmonds, "Systems of distinct representatives and linear algebra", 1967).
 class WeightProgramme {
  public:
-  WeightProgramme(const std::vector<Point>& a, const std::vector<Point>& b) : weights_(a.size() + b.size()) {
+  WeightProgramme(const std::vector<Point>& a, const std::vector<Point>& b, const Point* ray = nullptr)
+      : weights_(a.size() + b.size()) {
     for (auto& row : table_) row.resize(weights_ + 1 + equations + 1);
     for (std::size_t j = 0; j < weights_; ++j) {
       const bool of_b = j >= a.size();
@@ -45,7 +47,8 @@ class WeightProgramme {
       table_[of_b ? 4 : 3][j] = 1;
     }
     for (std::size_t i = 0; i < equations; ++i) {
-      for (std::size_t j = 0; j < weights_; ++j) table_[i][weights_] += table_[i][j];
+      for (std::size_t j = 0; j < weights_ && ray == nullptr; ++j) table_[i][weights_] += table_[i][j];
+      if (ray != nullptr && i < 3) table_[i][weights_] = -(*ray)[i];
       table_[i][artificial(i)] = 1;
       basis_[i] = artificial(i);
       table_[i].back() = i < 3 ? 0 : 1;
@@ -66,7 +69,7 @@ class WeightProgramme {
     }
     return true;
   }
-  /// After meet(): makes the least weight as great as can be. \returns whether it is above 0
+  /// After meet(): makes t as great as can be. \returns whether it is above 0
   bool meet_inside() {
     minimise(greatest);
     return table_[greatest].back() != 0;
@@ -170,8 +173,9 @@ bool strictly_below(const std::vector<Int>& d, const std::vector<Point>& a, cons
   return true;
 }
 
-/// A short direction close to `d` that separates as well, if one does.
-std::vector<Int> short_direction(const std::vector<Int>& d, const std::vector<Point>& a, const std::vector<Point>& b) {
+/// A short direction close to `d` that `separates` as well, if one does.
+template <class Separates>
+std::vector<Int> short_direction(const std::vector<Int>& d, const Separates& separates) {
   unsigned bits = 0;
   for (const Int& x : d) bits = x == 0 ? bits : std::max(bits, msb(abs(x)) + 1);
   for (const unsigned keep : {3U, 6U, 10U, 16U, 24U, 34U, 52U}) {
@@ -182,7 +186,7 @@ std::vector<Int> short_direction(const std::vector<Int>& d, const std::vector<Po
       rounded[i] = (abs(d[i]) + half) >> (bits - keep);
       if (d[i] < 0) rounded[i] = -rounded[i];
     }
-    if (strictly_below(rounded, a, b)) return reduced(rounded);
+    if (separates(rounded)) return reduced(rounded);
   }
   return reduced(d);
 }
@@ -194,6 +198,113 @@ Point cross_product(const Point& x, const Point& y) {
 bool is_zero(const Point& x) { return x[0] == 0 && x[1] == 0 && x[2] == 0; }
 
 std::vector<Int> as_vector(const Point& x) { return {x[0], x[1], x[2]}; }
+
+Point minus(const Point& p, const Point& q) { return {p[0] - q[0], p[1] - q[1], p[2] - q[2]}; }
+
+Int dot(const Point& p, const Point& q) { return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]; }
+
+/// Weights of some vertices of A and of B; those of either have the sum `total`.
+struct NamedPoints {
+  std::vector<std::pair<std::size_t, Int>> a;
+  std::vector<std::pair<std::size_t, Int>> b;
+  Int total = 1;
+};
+
+/// The nearest points of two hulls that share none: of a vertex and a vertex, edge or triangle of the other, or of two
+/// edges, those whose weights are positive and whose distance is least.
+class NearestPoints {
+ public:
+  NearestPoints(const std::vector<Point>& a, const std::vector<Point>& b) : a_(a), b_(b) {
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      for (std::size_t j = 0; j < b.size(); ++j) consider({{{i, 1}}, {{j, 1}}, 1});
+    }
+    for (const bool turned : {false, true}) {
+      const std::vector<Point>& points = turned ? a : b;
+      for (std::size_t v = 0; v < (turned ? b : a).size(); ++v) {
+        for (std::size_t i = 0; i < points.size(); ++i) {
+          for (std::size_t j = 0; j < i; ++j) {
+            vertex_edge(turned, v, i, j);
+            for (std::size_t k = 0; k < j; ++k) vertex_face(turned, v, {i, j, k});
+          }
+        }
+      }
+    }
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        for (std::size_t k = 0; k < b.size(); ++k) {
+          for (std::size_t m = 0; m < k; ++m) edges(i, j, k, m);
+        }
+      }
+    }
+  }
+  const NamedPoints& points() const { return best_; }
+  /// From the point of A to that of B, times `total`.
+  const Point& way() const { return way_; }
+
+ private:
+  void consider(const NamedPoints& named) {
+    Point way = {0, 0, 0};
+    for (const auto& [vertex, weight] : named.b) {
+      for (std::size_t axis = 0; axis < 3; ++axis) way[axis] += weight * b_[vertex][axis];
+    }
+    for (const auto& [vertex, weight] : named.a) {
+      for (std::size_t axis = 0; axis < 3; ++axis) way[axis] -= weight * a_[vertex][axis];
+    }
+    const Int square = dot(way, way);
+    if (square_ && square * best_.total * best_.total >= *square_ * named.total * named.total) return;
+    square_ = square;
+    best_ = named;
+    way_ = way;
+  }
+  void consider_turned(bool turned, const NamedPoints& named) {
+    consider(turned ? NamedPoints{named.b, named.a, named.total} : named);
+  }
+  void vertex_edge(bool turned, std::size_t v, std::size_t i, std::size_t j) {
+    const std::vector<Point>& points = turned ? a_ : b_;
+    const Point edge = minus(points[j], points[i]);
+    const Int length = dot(edge, edge);
+    const Int part = dot(edge, minus((turned ? b_ : a_)[v], points[i]));
+    if (part <= 0 || part >= length) return;
+    consider_turned(turned, {{{v, length}}, {{i, length - part}, {j, part}}, length});
+  }
+  void vertex_face(bool turned, std::size_t v, const std::array<std::size_t, 3>& corner) {
+    const std::vector<Point>& points = turned ? a_ : b_;
+    const Point& p = (turned ? b_ : a_)[v];
+    const auto edge = [&](std::size_t i) { return minus(points[corner[(i + 2) % 3]], points[corner[(i + 1) % 3]]); };
+    const Point normal = cross_product(edge(2), edge(0));
+    const Int total = dot(normal, normal);
+    NamedPoints named = {{{v, total}}, {}, total};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Int weight = dot(normal, cross_product(edge(i), minus(p, points[corner[(i + 1) % 3]])));
+      if (weight <= 0) return;
+      named.b.emplace_back(corner[i], weight);
+    }
+    consider_turned(turned, named);
+  }
+  void edges(std::size_t i, std::size_t j, std::size_t k, std::size_t m) {
+    const Point u = minus(a_[j], a_[i]);
+    const Point v = minus(b_[m], b_[k]);
+    const Point r = minus(b_[k], a_[i]);
+    const Int uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), ur = dot(u, r), vr = dot(v, r);
+    const Int total = uu * vv - uv * uv;
+    const Int s = ur * vv - uv * vr;
+    const Int t = uv * ur - uu * vr;
+    if (s <= 0 || s >= total || t <= 0 || t >= total) return;
+    consider({{{i, total - s}, {j, s}}, {{k, total - t}, {m, t}}, total});
+  }
+
+  const std::vector<Point>& a_;
+  const std::vector<Point>& b_;
+  NamedPoints best_;
+  Point way_ = {0, 0, 0};
+  std::optional<Int> square_;  // of the way
+};
+
+std::vector<Digits> weights_of(const std::vector<std::pair<std::size_t, Int>>& named, std::size_t count) {
+  std::vector<Int> weights(count);
+  for (const auto& [vertex, weight] : named) weights[vertex] = weight;
+  return digits(reduced(std::move(weights)));
+}
 
 /// Fills `span` of the cell with three edges that span space, or `direction` with one that is orthogonal to all edges.
 bool span_space(const std::vector<Point>& a, const std::vector<Point>& b, CertificateCell& cell) {
@@ -241,7 +352,8 @@ CertificateCell prove_pair(const std::vector<Point>& points_a, const std::vector
   WeightProgramme programme(a, b);
   if (!programme.meet()) {
     cell.kind = CellKind::separated;
-    cell.direction = digits(short_direction(programme.direction(false), a, b));
+    cell.direction = digits(short_direction(programme.direction(false),
+                                            [&](const std::vector<Int>& d) { return strictly_below(d, a, b); }));
     return cell;
   }
   cell.kind = CellKind::meet;
@@ -257,6 +369,60 @@ CertificateCell prove_pair(const std::vector<Point>& points_a, const std::vector
   const auto middle = weights.begin() + static_cast<std::ptrdiff_t>(a.size());
   cell.weights_a = digits(reduced({weights.begin(), middle}));
   cell.weights_b = digits(reduced({middle, weights.end()}));
+  return cell;
+}
+
+std::optional<CertificateCell> prove_clear(const std::vector<Point>& points_a, const std::vector<Point>& points_b,
+                                           const Point& along) {
+  std::vector<Point> a = points_a;
+  std::vector<Point> b = points_b;
+  shorten(a, b);
+  CertificateCell cell;
+  cell.kind = CertificateCell::Kind::separated;
+  WeightProgramme programme(a, b, &along);
+  const bool meets = programme.meet();
+  if (meets && programme.meet_inside()) return std::nullopt;
+  const auto separates = [&](const std::vector<Int>& d) {
+    const Int rise = certificate_check::dot(d, along);
+    return rise >= 0 && strictly_below(d, a, b);
+  };
+  cell.direction = digits(short_direction(programme.direction(meets), separates));
+  return cell;
+}
+
+CertificateCell prove_distance(const std::vector<Point>& a, const std::vector<Point>& b, const Int& within, bool below) {
+  using CellKind = CertificateCell::Kind;
+  CertificateCell cell;
+  cell.kind = CellKind::near;
+  WeightProgramme programme(a, b);
+  if (programme.meet()) {
+    const std::vector<Int> weights = programme.weights();
+    const auto middle = weights.begin() + static_cast<std::ptrdiff_t>(a.size());
+    cell.weights_a = digits(reduced({weights.begin(), middle}));
+    cell.weights_b = digits(reduced({middle, weights.end()}));
+    return cell;
+  }
+  const NearestPoints nearest(a, b);
+  const Int square = dot(nearest.way(), nearest.way());
+  const Int most = within * nearest.points().total;
+  if (below ? square < most * most : square <= most * most) {
+    cell.weights_a = weights_of(nearest.points().a, a.size());
+    cell.weights_b = weights_of(nearest.points().b, b.size());
+    return cell;
+  }
+  cell.kind = CellKind::separated;
+  const auto separates = [&](const std::vector<Int>& d) {
+    std::optional<Int> gap;
+    for (const Point& p : a) {
+      for (const Point& q : b) {
+        const Int here = certificate_check::dot(d, q) - certificate_check::dot(d, p);
+        if (!gap || here < *gap) gap = here;
+      }
+    }
+    const Int least = within * within * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    return *gap > 0 && (below ? *gap * *gap >= least : *gap * *gap > least);
+  };
+  cell.direction = digits(short_direction(as_vector(nearest.way()), separates));
   return cell;
 }
 

@@ -57,9 +57,6 @@ void check_query(const Pose& pose_a, const Pose& pose_b, const CollisionRequest&
     throw std::invalid_argument(
         "within: faces at a distance neither touch nor cross; leave out relation and least, or within");
   }
-  if (request.within > 0 && request.certificate) {
-    throw std::invalid_argument("certificate: there is none for faces at a distance; leave out certificate, or within");
-  }
 }
 
 void check_query(const CollisionQuery& query, const CollisionRequest& request) {

@@ -112,13 +112,50 @@ def overlap(direction, points):
     return max(dot(d, p) for p in points[0]) - min(dot(d, p) for p in points[1])
 
 
-def check_point(cell, corners):
+def reach(c):
+    """The distance up to which faces are contacts, 0 if they must share a point; and whether it is none itself."""
+    require(not ("within" in c and "below" in c), "two distances")
+    if "within" not in c and "below" not in c:
+        return Fraction(0), False
+    value = c["below"] if "below" in c else c["within"]
+    require(type(value) in (int, float) and 0 < value, "no distance")
+    require(c["least"] == "touching", "an unknown claim")
+    return Fraction(float(value)), "below" in c
+
+
+def translation(c):
+    """That of `along`, or nothing."""
+    if "along" not in c:
+        return None
+    require(c["all"] and not c["contacts"] and c["relation"] is None and c["least"] == "touching" and not reach(c)[0],
+            "no claim of a translation")
+    require(isinstance(c["along"], list) and len(c["along"]) == 3 and
+            all(type(x) in (int, float) for x in c["along"]) and any(c["along"]), "no translation")
+    return [Fraction(float(x)) for x in c["along"]]
+
+
+def separates(direction, points, within, below, along):
+    """Does the direction keep the points of A below those of B, as the claim wants it?"""
+    gap = -overlap(direction, points)
+    if along:
+        rise = dot(integers(direction, 3), along)
+        return rise >= 0 if gap > 0 else gap == 0 and rise > 0
+    least = within * within * dot(integers(direction, 3), integers(direction, 3))
+    return gap > 0 and (gap * gap > least or (below and gap * gap == least))
+
+
+def check_point(cell, corners, within, below):
     kind, place = cell["cell"], []
     for points, texts in zip(corners, (cell["a"], cell["b"])):
         weights = integers(texts, len(points))
         require(min(weights) >= (kind == "cross") and sum(weights) > 0, "a weight is too small")
         place.append([Fraction(1, sum(weights)) * dot(weights, axis) for axis in zip(*points)])
-    require(place[0] == place[1], "the points differ")
+    difference = [x - y for x, y in zip(*place)]
+    if kind == "near":
+        square = dot(difference, difference)
+        require(square < within * within or (not below and square == within * within), "the points are too far apart")
+        return
+    require(not any(difference), "the points differ")
     if kind == "touch":
         require(overlap(cell["direction"], corners) <= 0, "A is not below B")
     if kind == "cross":
@@ -131,10 +168,10 @@ def check_point(cell, corners):
 
 
 def check_claim(c, found):
-    """found: of two faces of the files, the set of kinds of the cells that name a point of them."""
-    strongest, all_told, contacts = 0, c["all"], []
+    """found: of two faces of the files, the set of kinds of the cells that name points of them."""
+    strongest, all_told, contacts = 0, c["all"] and c["collisionchip_certificate"] == 1, []
     for faces, kinds in sorted(found.items()):
-        told = "cross" in kinds or (c["all"] and "meet" not in kinds)
+        told = "near" not in kinds and ("cross" in kinds or (c["all"] and "meet" not in kinds))
         rank = 2 if "cross" in kinds else 1
         strongest, all_told = max(strongest, rank), all_told and told
         require(told or c["least"] != "crossing", "not told whether two faces cross")
@@ -152,10 +189,13 @@ def check(meshes, poses, lines):
     try:
         c, cells = parse(lines[0]), lines[1:]
         version, claimed = c["collisionchip_certificate"], c["contacts"]
-        require(type(version) is int and version == 1, "no certificate of version 1")
+        require(type(version) is int and version == (2 if {"within", "below", "along"} & c.keys() else 1),
+                "no certificate of this version")
         require(isinstance(claimed, list) and all(type(f) is int for x in claimed for f in x[:2]),
                 "no list of contacts")
         require(type(c["all"]) is bool and c["least"] in ("touching", "crossing"), "an unknown claim")
+        within, below = reach(c)
+        along = translation(c)
         hashes = [hash_mesh(*m) for m in meshes] + [hash_words(struct.pack("<24d", *(x + 0.0 for x in poses)))]
         require([c["mesh_a"], c["mesh_b"], c["poses"]] == hashes, "the certificate is of other meshes or poses")
         points = [placed(m[0], p) for m, p in zip(meshes, (poses[:12], poses[12:]))]
@@ -176,15 +216,16 @@ def check(meshes, poses, lines):
                 todo += [[sets[0], half] if side else [half, sets[1]] for half in ((at, end), (begin, at))]
             elif kind == "separated":
                 sides = [[p for f in orders[s][slice(*sets[s])] for p in corners(s, f)] for s in (0, 1)]
-                require(overlap(cell["direction"], sides) < 0, "A is not strictly below B")
+                require(separates(cell["direction"], sides, within, below, along), "A is not far enough below B")
             else:
-                require(kind in ("meet", "touch", "cross"), "unknown kind of cell")
+                kinds = ("near",) if within else () if along else ("meet", "touch", "cross")
+                require(kind in kinds, "unknown kind of cell")
                 require(len(cell["faces"]) == 2, "a point needs two faces")
                 require(all(type(f) is int and 0 <= f < len(m[1]) for f, m in zip(cell["faces"], meshes)),
                         "no such face")
                 require(not c["all"] or all([f] == o[slice(*x)] for f, o, x in zip(cell["faces"], orders, sets)),
                         "other faces")
-                check_point(cell, [corners(s, cell["faces"][s]) for s in (0, 1)])
+                check_point(cell, [corners(s, cell["faces"][s]) for s in (0, 1)], within, below)
                 found.setdefault(tuple(m[2][f] for f, m in zip(cell["faces"], meshes)), set()).add(kind)
         number = "claim"
         require(not c["all"] or not todo, "cells are missing")
@@ -226,7 +267,7 @@ def main(arguments):
         sys.exit(print(f"check.py: {error}", file=sys.stderr) or 2)
     for c in claims:
         print("accepted:", f"{len(c['contacts'])} contacts" if c["all"] else "a contact",
-              "and no others" if c["all"] else "")
+              "and no others" if c["all"] else "", *(f"{k} {c[k]}" for k in ("within", "below", "along") if k in c))
 
 
 if __name__ == "__main__":

@@ -60,9 +60,19 @@ class Scale {
   bool any_ = false;
 };
 
-/// The vertices of the faces of both meshes in their poses, all multiplied by the same power of two; exact.
-inline std::array<std::vector<Point>, 2> place(const std::array<const Mesh*, 2>& mesh,
-                                               const std::array<const Pose*, 2>& pose) {
+/// The point times a power of two.
+inline Point whole_point(const Vec3d& p) {
+  Scale scale;
+  for (int i = 0; i < 3; ++i) scale.add(p[i]);
+  return {scale.whole(p[0]), scale.whole(p[1]), scale.whole(p[2])};
+}
+
+struct Placed {
+  std::array<std::vector<Point>, 2> points;
+  Int length = 0;
+};
+/// The vertices of the faces of both meshes in their poses and a length, all multiplied by the same power of two; exact.
+inline Placed place(const std::array<const Mesh*, 2>& mesh, const std::array<const Pose*, 2>& pose, double length = 0) {
   std::array<std::vector<bool>, 2> used;
   Scale coordinate, entry, shift;
   for (const std::size_t side : {0U, 1U}) {
@@ -82,11 +92,14 @@ inline std::array<std::vector<Point>, 2> place(const std::array<const Mesh*, 2>&
       shift.add((*pose[side])(row, 3));
     }
   }
+  shift.add(length);
   // Products are multiples of 2^of_products, translations of 2^shift.exponent(); all are made such of the lesser one.
   const int of_products = coordinate.exponent() + entry.exponent();
   const unsigned to_products = static_cast<unsigned>(std::max(0, of_products - shift.exponent()));
   const unsigned to_shift = static_cast<unsigned>(std::max(0, shift.exponent() - of_products));
-  std::array<std::vector<Point>, 2> points;
+  Placed result;
+  result.length = shift.whole(length) << to_shift;
+  std::array<std::vector<Point>, 2>& points = result.points;
   for (const std::size_t side : {0U, 1U}) {
     std::array<std::array<Int, 4>, 3> map;
     for (std::size_t row = 0; row < 3; ++row) {
@@ -106,7 +119,7 @@ inline std::array<std::vector<Point>, 2> place(const std::array<const Mesh*, 2>&
       }
     }
   }
-  return points;
+  return result;
 }
 
 /// Reads integers of a certificate.
