@@ -551,6 +551,7 @@ module cchip_chip_core #(
       .COORD_W    (COORD_W),
       .SUBSTAGES  (SUBSTAGES),
       .CONTEXTS   (CONTEXTS),
+      .EXHAUSTIVE (0),
       .SLOTS      (SLOTS),
       .SWAPS      (SWAPS),
       .CFG_W      (CFG_W),

@@ -32,6 +32,7 @@ module cchip_slots #(
     parameter integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES),
     parameter integer ABSOLUTE_PROJECTION = 0,  // see cchip_primtest; legal: 0, 1
     parameter integer WARPED_EXACT = 1,  // see cchip_primtest; legal: 0, 1
+    parameter integer EXHAUSTIVE = 1,  // see cchip_primtest; legal: 0, 1
     // kinds of pairs, 4 with points against triangles; the modules are 0..KINDS; legal: 3, 4
     parameter integer KINDS = 3,
     parameter integer SLOTS = 1,                                      // slots; legal: 1..4
@@ -201,6 +202,7 @@ module cchip_slots #(
           .CONTEXTS           (CONTEXTS),
           .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
           .WARPED_EXACT       (WARPED_EXACT),
+          .EXHAUSTIVE         (EXHAUSTIVE),
           .KINDS              (KINDS),
           .SLOT_ID            (slot),
           .RM_ID              (slot == 0 ? SLOT0_RM_ID : slot == 1 ? SLOT1_RM_ID

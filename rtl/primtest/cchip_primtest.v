@@ -24,6 +24,9 @@ module cchip_primtest #(
     // 1: warped quads are decided exactly; 0: no programme TETRAHEDRON: what the directed beats do
     // not decide of a warped quad ends with hit 1, definite 0; legal: 0, 1
     parameter integer WARPED_EXACT = 1,
+    // 0: without the logic of mode EXHAUSTIVE, which is then reserved: axis class ILLEGAL, hit 1,
+    // definite 0; legal: 0, 1
+    parameter integer EXHAUSTIVE = 1,
     // vertices of A (vertex); legal: 3, 4; VERTS_A VERTS_B is 3 3, 3 4 or 4 4
     parameter integer VERTS_A = 3,
     parameter integer VERTS_B = 3  // vertices of B (vertex); legal: VERTS_A..4
@@ -203,7 +206,8 @@ module cchip_primtest #(
       .CONTEXT_W   (CONTEXT_W),
       .VERTS_A     (VERTS_A),
       .VERTS_B     (VERTS_B),
-      .WARPED_EXACT(WARPED_EXACT)
+      .WARPED_EXACT(WARPED_EXACT),
+      .EXHAUSTIVE  (EXHAUSTIVE)
   ) u_controller (
       .clk                    (clk),
       .rst                    (rst),

@@ -30,7 +30,8 @@ module cchip_pr_region #(
     parameter integer ABSOLUTE_PROJECTION = 0,
     // 1: warped quads are decided exactly; 0: what the directed beats do not decide of a warped
     // quad ends with hit 1, definite 0; legal: 0, 1
-    parameter integer WARPED_EXACT = 1
+    parameter integer WARPED_EXACT = 1,
+    parameter integer EXHAUSTIVE = 1  // see cchip_primtest; legal: 0, 1
 ) (
     input  wire                                clk,             // clock, rising edge
     input  wire                                rst,             // synchronous reset, active high
@@ -77,6 +78,7 @@ module cchip_pr_region #(
             .CONTEXTS           (CONTEXTS),
             .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
             .WARPED_EXACT       (WARPED_EXACT),
+            .EXHAUSTIVE         (EXHAUSTIVE),
             .VERTS_A            (`CCHIP_RM_VERTS_A(RM_ID)),
             .VERTS_B            (`CCHIP_RM_VERTS_B(RM_ID))
         ) u_test (

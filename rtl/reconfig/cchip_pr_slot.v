@@ -24,6 +24,7 @@ module cchip_pr_slot #(
     parameter integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES),
     parameter integer ABSOLUTE_PROJECTION = 0,  // see cchip_pr_region; legal: 0, 1
     parameter integer WARPED_EXACT = 1,  // see cchip_pr_region; legal: 0, 1
+    parameter integer EXHAUSTIVE = 1,  // see cchip_primtest; legal: 0, 1
     // kinds of pairs, 4 with points against triangles; the modules are 0..KINDS; legal: 3, 4
     parameter integer KINDS = 3,
     // number of this slot, compared with the one in a payload; legal: 0..255
@@ -129,7 +130,8 @@ module cchip_pr_slot #(
           .SUBSTAGES          (SUBSTAGES),
           .CONTEXTS           (CONTEXTS),
           .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
-          .WARPED_EXACT       (WARPED_EXACT)
+          .WARPED_EXACT       (WARPED_EXACT),
+          .EXHAUSTIVE         (EXHAUSTIVE)
       ) u_region (
           .clk           (clk),
           .rst           (region_rst_q),
@@ -152,7 +154,8 @@ module cchip_pr_slot #(
           .SUBSTAGES          (SUBSTAGES),
           .CONTEXTS           (CONTEXTS),
           .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
-          .WARPED_EXACT       (WARPED_EXACT)
+          .WARPED_EXACT       (WARPED_EXACT),
+          .EXHAUSTIVE         (EXHAUSTIVE)
       ) u_virtual (
           .clk           (clk),
           .rst           (region_rst_q),

@@ -20,7 +20,7 @@
 // EXHAUSTIVE: nA, nB, all e_k x f_l (l runs first) to the end; the first separating axis is
 // reported; a special case that none separates continues with its programme. Its verdicts come back
 // to back too, so one accumulator serves all. Reserved modes: one idle beat, then axis class
-// ILLEGAL.
+// ILLEGAL; mode EXHAUSTIVE is reserved, too, if the parameter EXHAUSTIVE is 0.
 module cchip_axis_controller #(
     parameter integer CONTEXTS = 42,    // pairs in flight; legal: 1..256
     // width of a context number (bit); legal: >= 1, 2^CONTEXT_W >= CONTEXTS
@@ -30,7 +30,9 @@ module cchip_axis_controller #(
     parameter integer VERTS_B = 3,      // vertices of B (vertex); legal: VERTS_A..4
     // 1: warped quads are decided exactly; 0: what the directed beats do not decide of a warped
     // quad is left open (definite = 0); legal: 0, 1
-    parameter integer WARPED_EXACT = 1
+    parameter integer WARPED_EXACT = 1,
+    // 1: both modes; 0: mode EXHAUSTIVE is reserved and its logic is absent; legal: 0, 1
+    parameter integer EXHAUSTIVE = 1
 ) (
     input  wire                                clk,                      // clock, rising edge
     input  wire                                rst,  // synchronous reset, active high
@@ -103,6 +105,7 @@ module cchip_axis_controller #(
   `CCHIP_REFUSE(CONTEXTS < 1 || CONTEXTS > `CCHIP_CONTEXTS_MAX || (1 << CONTEXT_W) < CONTEXTS,
                 cchip_error_CONTEXTS_must_be_1_to_256)
   `CCHIP_REFUSE(WARPED_EXACT != 0 && WARPED_EXACT != 1, cchip_error_WARPED_EXACT_must_be_0_or_1)
+  `CCHIP_REFUSE(EXHAUSTIVE != 0 && EXHAUSTIVE != 1, cchip_error_EXHAUSTIVE_must_be_0_or_1)
 
   // ---- contexts: after reset every number is handed out once in order; after that, numbers come
   // from the list of those that pairs have given back
@@ -190,11 +193,11 @@ module cchip_axis_controller #(
       .m_data ({start_deep, start_context, start_mode})
   );
 
-  wire [`CCHIP_PROG_W-1:0] start_programme = start_mode == `CCHIP_MODE_EXHAUSTIVE
-      ? `CCHIP_PROG_EXHAUSTIVE
-                             : start_mode == `CCHIP_MODE_DIRECTED ? `CCHIP_PROG_NORMALS
-                                                                  : `CCHIP_PROG_ILLEGAL;
-  wire [`CCHIP_AXIS_CODE_W-1:0] start_code = start_mode[1] ? CODE_ILLEGAL : CODE_FIRST;
+  wire exhaustive = EXHAUSTIVE != 0 && start_mode == `CCHIP_MODE_EXHAUSTIVE;
+  wire directed = start_mode == `CCHIP_MODE_DIRECTED;
+  wire [`CCHIP_PROG_W-1:0] start_programme = exhaustive ? `CCHIP_PROG_EXHAUSTIVE
+      : directed ? `CCHIP_PROG_NORMALS : `CCHIP_PROG_ILLEGAL;
+  wire [`CCHIP_AXIS_CODE_W-1:0] start_code = exhaustive || directed ? CODE_FIRST : CODE_ILLEGAL;
   wire [STATE_W-1:0] start_state = {start_deep, 1'b1, 1'b0, 6'd0, 14'd0, start_code,
                                     start_programme};
 
@@ -226,8 +229,9 @@ module cchip_axis_controller #(
   wire [`CCHIP_CLASS_W-1:0] beat_class = beat_code[`CCHIP_AXIS_CODE_CLASS];
   wire [`CCHIP_BEATS_W-1:0] beat_count = beat_q[`CCHIP_STATE_BEATS];
 
-  // while keep_q is 1, an EXHAUSTIVE pair issues its beats back to back and no other pair does
+  // while keep is 1, an EXHAUSTIVE pair issues its beats back to back and no other pair does
   reg keep_q;
+  wire keep = EXHAUSTIVE != 0 && keep_q;
   // the next axis of that pair: nB or e_k x f_l
   reg keep_cross_q;
   reg [1:0] keep_k_q, keep_l_q;
@@ -240,20 +244,20 @@ module cchip_axis_controller #(
   wire pair_waits /* verilator public_flat_rd */ = start_valid | ready_valid | beat_valid_q;
   reg  started_q;  // the last turn went to a pair that started
   wire take_start = start_valid & (~ready_valid | ~started_q);
-  assign ready_ready = ~keep_q & (~start_valid | started_q);
-  assign start_ready = ~keep_q & (~ready_valid | ~started_q);
+  assign ready_ready = ~keep & (~start_valid | started_q);
+  assign start_ready = ~keep & (~ready_valid | ~started_q);
 
   always @(posedge clk) begin
     if (rst) beat_valid_q <= 1'b0;
-    else beat_valid_q <= keep_q | ready_valid | start_valid;
+    else beat_valid_q <= keep | ready_valid | start_valid;
     if (rst) keep_q <= 1'b0;
-    else keep_q <= keep_q ? ~keep_last : take_start && start_mode == `CCHIP_MODE_EXHAUSTIVE;
+    else keep_q <= keep ? ~keep_last : take_start && exhaustive;
     if (rst) started_q <= 1'b0;
-    else if (!keep_q) started_q <= take_start;
-    keep_cross_q <= keep_q;
-    keep_l_q <= !keep_q || keep_row ? 2'd0 : keep_l_q + {1'b0, keep_cross_q};
-    keep_k_q <= !keep_q ? 2'd0 : keep_k_q + {1'b0, keep_row};
-    if (keep_q) begin
+    else if (!keep) started_q <= take_start;
+    keep_cross_q <= keep;
+    keep_l_q <= !keep || keep_row ? 2'd0 : keep_l_q + {1'b0, keep_cross_q};
+    keep_k_q <= !keep ? 2'd0 : keep_k_q + {1'b0, keep_row};
+    if (keep) begin
       beat_q[`CCHIP_STATE_CODE]  <= keep_code;
       beat_q[`CCHIP_STATE_BEATS] <= beat_count + 6'd1;
     end else beat_q <= take_start ? {start_context, start_state} : ready_state;
@@ -295,7 +299,8 @@ module cchip_axis_controller #(
   cchip_axis_programme #(
       .VERTS_A     (VERTS_A),
       .VERTS_B     (VERTS_B),
-      .WARPED_EXACT(WARPED_EXACT)
+      .WARPED_EXACT(WARPED_EXACT),
+      .EXHAUSTIVE  (EXHAUSTIVE)
   ) u_programme (
       .clk            (clk),
       .rst            (rst),

@@ -31,7 +31,8 @@ module cchip_axis_programme #(
     parameter integer VERTS_B = 3,      // vertices of B (vertex); legal: VERTS_A..4
     // 1: warped quads are decided exactly; 0: no programme TETRAHEDRON for warped quads; what the
     // directed beats do not decide of one is left open; legal: 0, 1
-    parameter integer WARPED_EXACT = 1
+    parameter integer WARPED_EXACT = 1,
+    parameter integer EXHAUSTIVE = 1  // 0: there are no EXHAUSTIVE pairs; legal: 0, 1
 ) (
     input  wire                          clk,              // clock, rising edge
     // synchronous reset, active high: no earlier verdict has an effect
@@ -97,7 +98,7 @@ module cchip_axis_programme #(
   wire [`CCHIP_INDEX_W-1:0] l = code[`CCHIP_AXIS_CODE_L];
   wire [`CCHIP_INFO_W-1:0] info = s_state[`CCHIP_STATE_INFO];
   wire [`CCHIP_BEATS_W-1:0] beats = s_state[`CCHIP_STATE_BEATS];
-  wire exhaustive = programme == `CCHIP_PROG_EXHAUSTIVE;
+  wire exhaustive = EXHAUSTIVE != 0 && programme == `CCHIP_PROG_EXHAUSTIVE;
   wire tetra = programme == `CCHIP_PROG_TETRAHEDRON;
   wire degenerate = programme == `CCHIP_PROG_DEGENERATE;
 
@@ -178,7 +179,12 @@ module cchip_axis_programme #(
   wire [`CCHIP_INFO_W-1:0] normal_a_info;
   wire normal_clear, certain_sides;
   wire [`CCHIP_PLAN_W-1:0] plan;
-  cchip_programme_plan #(.VERTS_A(VERTS_A), .VERTS_B(VERTS_B), .WARPED_EXACT(WARPED_EXACT)) u_plan (
+  cchip_programme_plan #(
+      .VERTS_A     (VERTS_A),
+      .VERTS_B     (VERTS_B),
+      .WARPED_EXACT(WARPED_EXACT),
+      .EXHAUSTIVE  (EXHAUSTIVE)
+  ) u_plan (
       .clk            (clk),
       .s_state        (s_state),
       .s_negative     (s_negative),
@@ -276,7 +282,7 @@ module cchip_axis_programme #(
         state_certain);
   end
 
-  // ================ clock 3: EXHAUSTIVE or not
+  // ================ clock 3: EXHAUSTIVE or not; with EXHAUSTIVE = 0 found_valid is constant 0
   wire found_valid, found_outcome, found_proceed, found_separated, found_certain, found_to_tetra,
       found_deep;
   wire [`CCHIP_AXIS_CODE_W-1:0] found_witness;

@@ -24,7 +24,8 @@ module cchip_programme_plan #(
     parameter integer VERTS_B = 3,      // vertices of B (vertex); legal: VERTS_A..4
     // 1: warped quads are decided exactly; 0: no programme TETRAHEDRON; a warped quad makes the
     // plan open; legal: 0, 1
-    parameter integer WARPED_EXACT = 1
+    parameter integer WARPED_EXACT = 1,
+    parameter integer EXHAUSTIVE = 1  // 0: there are no EXHAUSTIVE pairs; legal: 0, 1
 ) (
     input  wire                        clk,              // clock, rising edge
     // programme state of the verdict's beat, record STATE,
@@ -91,7 +92,7 @@ module cchip_programme_plan #(
 
   // ================ clock 1
   wire [`CCHIP_INFO_W-1:0] info = s_state[`CCHIP_STATE_INFO];
-  wire exhaustive = s_state[`CCHIP_STATE_PROGRAMME] == `CCHIP_PROG_EXHAUSTIVE;
+  wire exhaustive = EXHAUSTIVE != 0 && s_state[`CCHIP_STATE_PROGRAMME] == `CCHIP_PROG_EXHAUSTIVE;
   reg [3:0] side_a_q, side_b_q;
   reg b_on_plane_q, clear_q, warped_a_q, warped_b_q;
   reg [2:0] axis_negative_q, axis_zero_q;

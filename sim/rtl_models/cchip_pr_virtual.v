@@ -46,7 +46,8 @@ module cchip_pr_virtual #(
     // pairs in flight; legal: 1..256
     parameter integer CONTEXTS = `CCHIP_CONTEXTS_DEFAULT(SUBSTAGES),
     parameter integer ABSOLUTE_PROJECTION = 0,  // see cchip_pr_region; legal: 0, 1
-    parameter integer WARPED_EXACT = 1  // see cchip_pr_region; legal: 0, 1
+    parameter integer WARPED_EXACT = 1,  // see cchip_pr_region; legal: 0, 1
+    parameter integer EXHAUSTIVE = 1  // see cchip_primtest; legal: 0, 1
 ) (
     input  wire                                clk,             // clock, rising edge
     input  wire                                rst,             // synchronous reset, active high
@@ -138,7 +139,8 @@ module cchip_pr_virtual #(
           .SUBSTAGES          (SUBSTAGES),
           .CONTEXTS           (CONTEXTS),
           .ABSOLUTE_PROJECTION(ABSOLUTE_PROJECTION),
-          .WARPED_EXACT       (WARPED_EXACT)
+          .WARPED_EXACT       (WARPED_EXACT),
+          .EXHAUSTIVE         (EXHAUSTIVE)
       ) u_region (
           .clk           (gated_clk),
           .rst           (rst & ~dirty),

@@ -37,6 +37,7 @@ TOO_LONG = "cchip_error_SUBSTAGES_above_32"
 CONTEXTS = "cchip_error_CONTEXTS_must_be_1_to_256"
 PROJECTION = "cchip_error_ABSOLUTE_PROJECTION_must_be_0_or_1"
 WARPED = "cchip_error_WARPED_EXACT_must_be_0_or_1"
+EXHAUSTIVE = "cchip_error_EXHAUSTIVE_must_be_0_or_1"
 LANES = "cchip_error_LANES_must_be_1_to_16"
 VERTS = "cchip_error_VERTS_must_be_3_3_or_3_4_or_4_4"
 MUL_WIDE = "cchip_error_mul_wide_A_W_and_B_W_must_be_2_to_52"
@@ -104,6 +105,8 @@ ILLEGAL = [
     ("cchip_axis_controller", {"CONTEXTS": 257, "CONTEXT_W": 9}, CONTEXTS),
     ("cchip_axis_controller", {"CONTEXTS": 34, "CONTEXT_W": 5}, CONTEXTS),
     ("cchip_axis_controller", {"WARPED_EXACT": 2}, WARPED),
+    *((module, {"EXHAUSTIVE": n}, EXHAUSTIVE)
+      for module in ("cchip_axis_controller", "cchip_primtest") for n in (-1, 2)),
     *(("cchip_sat_axis", {"COORD_W": w, "SUBSTAGES": s}, TOO_SHORT) for w, s in ((8, 4), (16, 4), (18, 5))),
     *(("cchip_sat_project", {"COORD_W": w, "SUBSTAGES": smallest_substages(w) - 1}, TOO_SHORT) for w in (8, 17)),
     ("cchip_sat_project", {"ABSOLUTE_PROJECTION": 2}, PROJECTION),
@@ -289,6 +292,8 @@ LEGAL = [
     (ARRAY, {"LANES": 3, "VERTS_A": 4, "VERTS_B": 4, "ABSOLUTE_PROJECTION": 1, "WARPED_EXACT": 0}),
     *((f"cchip_axis_{part}", {"VERTS_A": a, "VERTS_B": b, "WARPED_EXACT": exact})
       for part in ("programme", "controller") for a, b, exact in ((3, 3, 1), (3, 4, 0), (4, 4, 1))),
+    *((f"cchip_axis_{part}", {"VERTS_A": a, "VERTS_B": b, "EXHAUSTIVE": 0})
+      for part in ("programme", "controller") for a, b in ((3, 3), (4, 4))),
     ("cchip_axis_controller", {"CONTEXTS": 1, "CONTEXT_W": 1}),
     ("cchip_axis_controller", {"CONTEXTS": 256, "CONTEXT_W": 8}),
     ("cchip_mul_wide", {"A_W": 2, "B_W": 2}),

@@ -10,7 +10,8 @@ module cchip_pr_region #(
     parameter integer SUBSTAGES = 5,
     parameter integer CONTEXTS = 1,
     parameter integer ABSOLUTE_PROJECTION = 0,
-    parameter integer WARPED_EXACT = 1
+    parameter integer WARPED_EXACT = 1,
+    parameter integer EXHAUSTIVE = 1
 ) (
     input  wire                                clk,
     input  wire                                rst,

@@ -60,13 +60,15 @@ class ControllerBench {
                                                             : 1;
     top.s_pair_tag = header_.tag;  // of the pair before
     top.s_pair_err = static_cast<CData>(header_.err);
-    header_ = {static_cast<std::uint16_t>(random_()), static_cast<PairMode>(mode),
+    // without its logic mode EXHAUSTIVE is a reserved one
+    const auto meant = Config::EXHAUSTIVE == 0 && mode == 0 ? 2 : mode;
+    header_ = {static_cast<std::uint16_t>(random_()), static_cast<PairMode>(meant),
                static_cast<int>(chance(random_, 50) ? 0 : random_() % 16)};
     // the first context is ready on the third clock after reset
     const bool may_send = !now.in_reset && now.clock > 1;
     const bool room = in_flight_.size() + (left_before_ + left_earlier_) < static_cast<std::size_t>(Config::CONTEXTS);
     top.s_pair_valid = pattern_.next() && room && may_send ? 1 : 0;
-    top.s_pair_mode = static_cast<CData>(header_.mode);
+    top.s_pair_mode = static_cast<CData>(mode);
     const auto& flying = pipeline_.q();
     top.s_verdict_valid = flying ? 1 : 0;
     const model::Verdict v = flying ? flying->model.verdict : random_verdict(random_, 50, 0);
