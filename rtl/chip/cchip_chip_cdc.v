@@ -166,12 +166,10 @@ module cchip_chip_cdc #(
       chip_axi_bid, chip_axi_cfg_arvalid, chip_axi_cfg_arready, chip_axi_cfg_rvalid,
       chip_axi_cfg_rready, chip_axi_cfg_rlast;
   wire [11:0] chip_axil_awaddr, chip_axil_araddr;
-  wire [2:0] chip_axil_awprot, chip_axil_arprot, chip_axi_arsize, chip_axi_arprot,
-      chip_axi_awsize, chip_axi_awprot, chip_axi_cfg_arsize, chip_axi_cfg_arprot;
+  wire [2:0] chip_axil_awprot, chip_axil_arprot;
   wire [31:0] chip_axil_wdata, chip_axil_rdata, chip_axi_cfg_araddr, chip_axi_cfg_rdata;
-  wire [3:0] chip_axil_wstrb, chip_axi_arcache, chip_axi_awcache, chip_axi_cfg_arcache;
-  wire [1:0] chip_axil_bresp, chip_axil_rresp, chip_axi_arburst, chip_axi_rresp,
-      chip_axi_awburst, chip_axi_bresp, chip_axi_cfg_arburst, chip_axi_cfg_rresp;
+  wire [3:0] chip_axil_wstrb;
+  wire [1:0] chip_axil_bresp, chip_axil_rresp, chip_axi_rresp, chip_axi_bresp, chip_axi_cfg_rresp;
   wire [$clog2(MISSES):0] chip_axi_arid, chip_axi_rid;
   wire [63:0] chip_axi_araddr, chip_axi_awaddr;
   wire [7:0] chip_axi_arlen, chip_axi_awlen, chip_axi_cfg_arlen;
@@ -225,6 +223,7 @@ module cchip_chip_cdc #(
       .m_irq         (chip_irq)
   );
 
+  // size, burst, cache and prot of all addresses are constants of the chip: no clock crosses there
   cchip_axi_cdc #(
       .ADDRESS_W (64),
       .DATA_W    (DATA_W),
@@ -240,10 +239,6 @@ module cchip_chip_cdc #(
       .s_axi_arid   (chip_axi_arid),
       .s_axi_araddr (chip_axi_araddr),
       .s_axi_arlen  (chip_axi_arlen),
-      .s_axi_arsize (chip_axi_arsize),
-      .s_axi_arburst(chip_axi_arburst),
-      .s_axi_arcache(chip_axi_arcache),
-      .s_axi_arprot (chip_axi_arprot),
       .s_axi_rvalid (chip_axi_rvalid),
       .s_axi_rready (chip_axi_rready),
       .s_axi_rid    (chip_axi_rid),
@@ -255,10 +250,6 @@ module cchip_chip_cdc #(
       .s_axi_awid   (chip_axi_awid),
       .s_axi_awaddr (chip_axi_awaddr),
       .s_axi_awlen  (chip_axi_awlen),
-      .s_axi_awsize (chip_axi_awsize),
-      .s_axi_awburst(chip_axi_awburst),
-      .s_axi_awcache(chip_axi_awcache),
-      .s_axi_awprot (chip_axi_awprot),
       .s_axi_wvalid (chip_axi_wvalid),
       .s_axi_wready (chip_axi_wready),
       .s_axi_wdata  (chip_axi_wdata),
@@ -275,10 +266,6 @@ module cchip_chip_cdc #(
       .m_axi_arid   (m_axi_arid),
       .m_axi_araddr (m_axi_araddr),
       .m_axi_arlen  (m_axi_arlen),
-      .m_axi_arsize (m_axi_arsize),
-      .m_axi_arburst(m_axi_arburst),
-      .m_axi_arcache(m_axi_arcache),
-      .m_axi_arprot (m_axi_arprot),
       .m_axi_rvalid (m_axi_rvalid),
       .m_axi_rready (m_axi_rready),
       .m_axi_rid    (m_axi_rid),
@@ -290,10 +277,6 @@ module cchip_chip_cdc #(
       .m_axi_awid   (m_axi_awid),
       .m_axi_awaddr (m_axi_awaddr),
       .m_axi_awlen  (m_axi_awlen),
-      .m_axi_awsize (m_axi_awsize),
-      .m_axi_awburst(m_axi_awburst),
-      .m_axi_awcache(m_axi_awcache),
-      .m_axi_awprot (m_axi_awprot),
       .m_axi_wvalid (m_axi_wvalid),
       .m_axi_wready (m_axi_wready),
       .m_axi_wdata  (m_axi_wdata),
@@ -306,19 +289,17 @@ module cchip_chip_cdc #(
   );
 
   // read only; with SWAPS = 0 the chip offers no address here, and synthesis removes both queues
-  cchip_async_fifo #(.WIDTH(52), .DEPTH(CDC_DEPTH), .STAGES(STAGES)) u_cfg_ar (
+  cchip_async_fifo #(.WIDTH(40), .DEPTH(CDC_DEPTH), .STAGES(STAGES)) u_cfg_ar (
       .s_clk  (clk),
       .s_rst  (rst),
       .s_valid(chip_axi_cfg_arvalid),
       .s_ready(chip_axi_cfg_arready),
-      .s_data ({chip_axi_cfg_araddr, chip_axi_cfg_arlen, chip_axi_cfg_arsize,
-                chip_axi_cfg_arburst, chip_axi_cfg_arcache, chip_axi_cfg_arprot}),
+      .s_data ({chip_axi_cfg_araddr, chip_axi_cfg_arlen}),
       .m_clk  (mem_clk),
       .m_rst  (mem_rst),
       .m_valid(m_axi_cfg_arvalid),
       .m_ready(m_axi_cfg_arready),
-      .m_data ({m_axi_cfg_araddr, m_axi_cfg_arlen, m_axi_cfg_arsize,
-                m_axi_cfg_arburst, m_axi_cfg_arcache, m_axi_cfg_arprot})
+      .m_data ({m_axi_cfg_araddr, m_axi_cfg_arlen})
   );
 
   cchip_async_fifo #(.WIDTH(35), .DEPTH(CDC_DEPTH), .STAGES(STAGES)) u_cfg_r (
@@ -391,10 +372,10 @@ module cchip_chip_cdc #(
       .m_axi_arid       (chip_axi_arid),
       .m_axi_araddr     (chip_axi_araddr),
       .m_axi_arlen      (chip_axi_arlen),
-      .m_axi_arsize     (chip_axi_arsize),
-      .m_axi_arburst    (chip_axi_arburst),
-      .m_axi_arcache    (chip_axi_arcache),
-      .m_axi_arprot     (chip_axi_arprot),
+      .m_axi_arsize     (m_axi_arsize),
+      .m_axi_arburst    (m_axi_arburst),
+      .m_axi_arcache    (m_axi_arcache),
+      .m_axi_arprot     (m_axi_arprot),
       .m_axi_rvalid     (chip_axi_rvalid),
       .m_axi_rready     (chip_axi_rready),
       .m_axi_rid        (chip_axi_rid),
@@ -406,10 +387,10 @@ module cchip_chip_cdc #(
       .m_axi_awid       (chip_axi_awid),
       .m_axi_awaddr     (chip_axi_awaddr),
       .m_axi_awlen      (chip_axi_awlen),
-      .m_axi_awsize     (chip_axi_awsize),
-      .m_axi_awburst    (chip_axi_awburst),
-      .m_axi_awcache    (chip_axi_awcache),
-      .m_axi_awprot     (chip_axi_awprot),
+      .m_axi_awsize     (m_axi_awsize),
+      .m_axi_awburst    (m_axi_awburst),
+      .m_axi_awcache    (m_axi_awcache),
+      .m_axi_awprot     (m_axi_awprot),
       .m_axi_wvalid     (chip_axi_wvalid),
       .m_axi_wready     (chip_axi_wready),
       .m_axi_wdata      (chip_axi_wdata),
@@ -426,10 +407,10 @@ module cchip_chip_cdc #(
       .m_axi_cfg_arready(chip_axi_cfg_arready),
       .m_axi_cfg_araddr (chip_axi_cfg_araddr),
       .m_axi_cfg_arlen  (chip_axi_cfg_arlen),
-      .m_axi_cfg_arsize (chip_axi_cfg_arsize),
-      .m_axi_cfg_arburst(chip_axi_cfg_arburst),
-      .m_axi_cfg_arcache(chip_axi_cfg_arcache),
-      .m_axi_cfg_arprot (chip_axi_cfg_arprot),
+      .m_axi_cfg_arsize (m_axi_cfg_arsize),
+      .m_axi_cfg_arburst(m_axi_cfg_arburst),
+      .m_axi_cfg_arcache(m_axi_cfg_arcache),
+      .m_axi_cfg_arprot (m_axi_cfg_arprot),
       .m_axi_cfg_rvalid (chip_axi_cfg_rvalid),
       .m_axi_cfg_rready (chip_axi_cfg_rready),
       .m_axi_cfg_rdata  (chip_axi_cfg_rdata),

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 // cchip_axi_cdc: AXI4 from one clock to another, of any ratio and phase: one cchip_async_fifo for
-// each channel. It has the signals that the masters of this project use: no lock, QoS, region or
-// user.
+// each channel. It has the signals that change with a beat of this project's masters. Size, burst,
+// cache and prot are constants of these masters and go round the bridge; there is no lock, QoS,
+// region or user.
 //   latency      of a channel, one way: that of cchip_async_fifo; a read takes both ways
 //   throughput   a beat per clock of the slower side on each channel, DEPTH >= 4 + 2 STAGES
 //   capacity     DEPTH + 1 beats of each channel. It counts no transactions: the master bounds them
@@ -28,10 +29,6 @@ module cchip_axi_cdc #(
     input  wire [      ID_W-1:0] s_axi_arid,     // ID
     input  wire [ ADDRESS_W-1:0] s_axi_araddr,   // address
     input  wire [           7:0] s_axi_arlen,    // beats - 1
-    input  wire [           2:0] s_axi_arsize,   // bytes of a beat, log2
-    input  wire [           1:0] s_axi_arburst,  // kind of burst
-    input  wire [           3:0] s_axi_arcache,  // attributes of memory
-    input  wire [           2:0] s_axi_arprot,   // protection
     output wire                  s_axi_rvalid,   // read data: valid
     input  wire                  s_axi_rready,   // taken
     output wire [      ID_W-1:0] s_axi_rid,      // ID
@@ -43,10 +40,6 @@ module cchip_axi_cdc #(
     input  wire [WRITE_ID_W-1:0] s_axi_awid,     // ID
     input  wire [ ADDRESS_W-1:0] s_axi_awaddr,   // address
     input  wire [           7:0] s_axi_awlen,    // beats - 1
-    input  wire [           2:0] s_axi_awsize,   // bytes of a beat, log2
-    input  wire [           1:0] s_axi_awburst,  // kind of burst
-    input  wire [           3:0] s_axi_awcache,  // attributes of memory
-    input  wire [           2:0] s_axi_awprot,   // protection
     input  wire                  s_axi_wvalid,   // write data: valid
     output wire                  s_axi_wready,   // taken
     input  wire [    DATA_W-1:0] s_axi_wdata,    // data
@@ -64,10 +57,6 @@ module cchip_axi_cdc #(
     output wire [      ID_W-1:0] m_axi_arid,     // ID
     output wire [ ADDRESS_W-1:0] m_axi_araddr,   // address
     output wire [           7:0] m_axi_arlen,    // beats - 1
-    output wire [           2:0] m_axi_arsize,   // bytes of a beat, log2
-    output wire [           1:0] m_axi_arburst,  // kind of burst
-    output wire [           3:0] m_axi_arcache,  // attributes of memory
-    output wire [           2:0] m_axi_arprot,   // protection
     input  wire                  m_axi_rvalid,   // read data: valid
     output wire                  m_axi_rready,   // taken
     input  wire [      ID_W-1:0] m_axi_rid,      // ID
@@ -79,10 +68,6 @@ module cchip_axi_cdc #(
     output wire [WRITE_ID_W-1:0] m_axi_awid,     // ID
     output wire [ ADDRESS_W-1:0] m_axi_awaddr,   // address
     output wire [           7:0] m_axi_awlen,    // beats - 1
-    output wire [           2:0] m_axi_awsize,   // bytes of a beat, log2
-    output wire [           1:0] m_axi_awburst,  // kind of burst
-    output wire [           3:0] m_axi_awcache,  // attributes of memory
-    output wire [           2:0] m_axi_awprot,   // protection
     output wire                  m_axi_wvalid,   // write data: valid
     input  wire                  m_axi_wready,   // taken
     output wire [    DATA_W-1:0] m_axi_wdata,    // data
@@ -94,19 +79,17 @@ module cchip_axi_cdc #(
     input  wire [           1:0] m_axi_bresp     // response
 );
 
-  cchip_async_fifo #(.WIDTH(ID_W + ADDRESS_W + 20), .DEPTH(DEPTH), .STAGES(STAGES)) u_ar (
+  cchip_async_fifo #(.WIDTH(ID_W + ADDRESS_W + 8), .DEPTH(DEPTH), .STAGES(STAGES)) u_ar (
       .s_clk  (s_clk),
       .s_rst  (s_rst),
       .s_valid(s_axi_arvalid),
       .s_ready(s_axi_arready),
-      .s_data ({s_axi_arid, s_axi_araddr, s_axi_arlen, s_axi_arsize,
-                  s_axi_arburst, s_axi_arcache, s_axi_arprot}),
+      .s_data ({s_axi_arid, s_axi_araddr, s_axi_arlen}),
       .m_clk  (m_clk),
       .m_rst  (m_rst),
       .m_valid(m_axi_arvalid),
       .m_ready(m_axi_arready),
-      .m_data ({m_axi_arid, m_axi_araddr, m_axi_arlen, m_axi_arsize,
-                  m_axi_arburst, m_axi_arcache, m_axi_arprot})
+      .m_data ({m_axi_arid, m_axi_araddr, m_axi_arlen})
   );
 
   cchip_async_fifo #(.WIDTH(ID_W + DATA_W + 3), .DEPTH(DEPTH), .STAGES(STAGES)) u_r (
@@ -122,19 +105,17 @@ module cchip_axi_cdc #(
       .m_data ({s_axi_rid, s_axi_rdata, s_axi_rresp, s_axi_rlast})
   );
 
-  cchip_async_fifo #(.WIDTH(WRITE_ID_W + ADDRESS_W + 20), .DEPTH(DEPTH), .STAGES(STAGES)) u_aw (
+  cchip_async_fifo #(.WIDTH(WRITE_ID_W + ADDRESS_W + 8), .DEPTH(DEPTH), .STAGES(STAGES)) u_aw (
       .s_clk  (s_clk),
       .s_rst  (s_rst),
       .s_valid(s_axi_awvalid),
       .s_ready(s_axi_awready),
-      .s_data ({s_axi_awid, s_axi_awaddr, s_axi_awlen, s_axi_awsize,
-                  s_axi_awburst, s_axi_awcache, s_axi_awprot}),
+      .s_data ({s_axi_awid, s_axi_awaddr, s_axi_awlen}),
       .m_clk  (m_clk),
       .m_rst  (m_rst),
       .m_valid(m_axi_awvalid),
       .m_ready(m_axi_awready),
-      .m_data ({m_axi_awid, m_axi_awaddr, m_axi_awlen, m_axi_awsize,
-                  m_axi_awburst, m_axi_awcache, m_axi_awprot})
+      .m_data ({m_axi_awid, m_axi_awaddr, m_axi_awlen})
   );
 
   cchip_async_fifo #(.WIDTH(DATA_W + DATA_W/8 + 1), .DEPTH(DEPTH), .STAGES(STAGES)) u_w (
