@@ -258,6 +258,10 @@ def lanes(f):
 def update(r, f, i, strobe):
     """What the stored field of element i becomes outside of reset."""
     hardware = f"hwif_in_{signal(r, f)}_{'hwset' if kind(f) == 'event' else 'hwclr'}"
+    if kind(f) == "plain" and f["width"] == 32:
+        q = part(f"{signal(r, f)}_q", 32, r["count"], i)
+        yield f"if (strobe_q[{strobe}]) {q} <= merged({q}, wdata_q, wstrb_q);"
+        return
     for lane, first, bits in lanes(f):
         offset = f["width"] * i + first - f["lsb"]
         row = f["width"] * r["count"]
@@ -324,6 +328,15 @@ def chosen(targets, name, address, enable):
     return "\n".join(lines + assigns)
 
 
+MERGED = """
+  // a word whose bytes with a strobe are written
+  function [31:0] merged(input [31:0] old, input [31:0] data, input [3:0] strobes);
+    merged = {
+      strobes[3] ? data[24+:8] : old[24+:8], strobes[2] ? data[16+:8] : old[16+:8],
+      strobes[1] ? data[8+:8] : old[8+:8], strobes[0] ? data[0+:8] : old[0+:8]
+    };
+  endfunction
+"""
 FRAME = """\
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 // {note}
@@ -394,7 +407,7 @@ module {module} (
 
   // ---- fields
 {declarations}
-
+{merged}
   always @(posedge clk)
     if (rst) begin
 {resets}
@@ -524,6 +537,7 @@ def verilog(name_of_map, registers):
         read_choice=chosen(selects, "selected", "raddr_q", "read_q"),
         words_count=len(read_words), words="\n".join(f"      ({word} & {{32{{select_q[{k}]}}}}) |"
                                                      for k, word in enumerate(read_words)),
+        merged=MERGED if any("merged(" in line for line in updates) else "",
         declarations="\n".join(declarations), resets="\n".join(resets), updates="\n".join(updates),
         outputs="\n".join(outputs), external_outputs="\n".join(external_outputs)))
 

@@ -282,6 +282,14 @@ module cchip_chip_regs (
   reg [31:0] swap_minimum_batch_pairs_q;
   reg [31:0] swap_maximum_age_clocks_q;
 
+  // a word whose bytes with a strobe are written
+  function [31:0] merged(input [31:0] old, input [31:0] data, input [3:0] strobes);
+    merged = {
+      strobes[3] ? data[24+:8] : old[24+:8], strobes[2] ? data[16+:8] : old[16+:8],
+      strobes[1] ? data[8+:8] : old[8+:8], strobes[0] ? data[0+:8] : old[0+:8]
+    };
+  endfunction
+
   always @(posedge clk)
     if (rst) begin
       control_clear_q <= 1'h0;
@@ -364,24 +372,15 @@ module cchip_chip_regs (
       if (strobe_q[2] & wstrb_q[0]) interrupt_enable_record_failed_q <= wdata_q[2];
       if (strobe_q[2] & wstrb_q[0]) interrupt_enable_query_failed_q <= wdata_q[1];
       if (strobe_q[2] & wstrb_q[0]) interrupt_enable_record_q <= wdata_q[0];
-      if (strobe_q[3] & wstrb_q[0]) step_limit_steps_q[0+:8] <= wdata_q[0+:8];
-      if (strobe_q[3] & wstrb_q[1]) step_limit_steps_q[8+:8] <= wdata_q[8+:8];
-      if (strobe_q[3] & wstrb_q[2]) step_limit_steps_q[16+:8] <= wdata_q[16+:8];
-      if (strobe_q[3] & wstrb_q[3]) step_limit_steps_q[24+:8] <= wdata_q[24+:8];
-      if (strobe_q[4] & wstrb_q[0]) memory_limit_clocks_q[0+:8] <= wdata_q[0+:8];
-      if (strobe_q[4] & wstrb_q[1]) memory_limit_clocks_q[8+:8] <= wdata_q[8+:8];
-      if (strobe_q[4] & wstrb_q[2]) memory_limit_clocks_q[16+:8] <= wdata_q[16+:8];
-      if (strobe_q[4] & wstrb_q[3]) memory_limit_clocks_q[24+:8] <= wdata_q[24+:8];
+      if (strobe_q[3]) step_limit_steps_q <= merged(step_limit_steps_q, wdata_q, wstrb_q);
+      if (strobe_q[4]) memory_limit_clocks_q <= merged(memory_limit_clocks_q, wdata_q, wstrb_q);
       if (strobe_q[5] & wstrb_q[0]) open_limit_pairs_q <= wdata_q[0+:8];
       if (strobe_q[6] & wstrb_q[0]) pairs_each_pairs_q <= wdata_q[0+:3];
       if (strobe_q[7] & wstrb_q[0]) query_base_low_value_q[0+:2] <= wdata_q[6+:2];
       if (strobe_q[7] & wstrb_q[1]) query_base_low_value_q[2+:8] <= wdata_q[8+:8];
       if (strobe_q[7] & wstrb_q[2]) query_base_low_value_q[10+:8] <= wdata_q[16+:8];
       if (strobe_q[7] & wstrb_q[3]) query_base_low_value_q[18+:8] <= wdata_q[24+:8];
-      if (strobe_q[8] & wstrb_q[0]) query_base_high_value_q[0+:8] <= wdata_q[0+:8];
-      if (strobe_q[8] & wstrb_q[1]) query_base_high_value_q[8+:8] <= wdata_q[8+:8];
-      if (strobe_q[8] & wstrb_q[2]) query_base_high_value_q[16+:8] <= wdata_q[16+:8];
-      if (strobe_q[8] & wstrb_q[3]) query_base_high_value_q[24+:8] <= wdata_q[24+:8];
+      if (strobe_q[8]) query_base_high_value_q <= merged(query_base_high_value_q, wdata_q, wstrb_q);
       if (strobe_q[9] & wstrb_q[0]) query_size_log2_q <= wdata_q[0+:4];
       if (strobe_q[10] & wstrb_q[0]) query_producer_count_q[0+:8] <= wdata_q[0+:8];
       else query_producer_count_q[0+:8] <= query_producer_count_q[0+:8] &
@@ -393,10 +392,8 @@ module cchip_chip_regs (
       if (strobe_q[11] & wstrb_q[1]) record_base_low_value_q[4+:8] <= wdata_q[8+:8];
       if (strobe_q[11] & wstrb_q[2]) record_base_low_value_q[12+:8] <= wdata_q[16+:8];
       if (strobe_q[11] & wstrb_q[3]) record_base_low_value_q[20+:8] <= wdata_q[24+:8];
-      if (strobe_q[12] & wstrb_q[0]) record_base_high_value_q[0+:8] <= wdata_q[0+:8];
-      if (strobe_q[12] & wstrb_q[1]) record_base_high_value_q[8+:8] <= wdata_q[8+:8];
-      if (strobe_q[12] & wstrb_q[2]) record_base_high_value_q[16+:8] <= wdata_q[16+:8];
-      if (strobe_q[12] & wstrb_q[3]) record_base_high_value_q[24+:8] <= wdata_q[24+:8];
+      if (strobe_q[12]) record_base_high_value_q <= merged(record_base_high_value_q, wdata_q,
+          wstrb_q);
       if (strobe_q[13] & wstrb_q[0]) record_size_log2_q <= wdata_q[0+:5];
       if (strobe_q[14] & wstrb_q[0]) record_consumer_count_q[0+:8] <= wdata_q[0+:8];
       else record_consumer_count_q[0+:8] <= record_consumer_count_q[0+:8] &
@@ -410,46 +407,25 @@ module cchip_chip_regs (
       if (strobe_q[14] & wstrb_q[3]) record_consumer_count_q[24+:8] <= wdata_q[24+:8];
       else record_consumer_count_q[24+:8] <= record_consumer_count_q[24+:8] &
           ~hwif_in_record_consumer_count_hwclr[24+:8];
-      if (strobe_q[15] & wstrb_q[0]) lock_first_line_q[0+:8] <= wdata_q[0+:8];
-      if (strobe_q[15] & wstrb_q[1]) lock_first_line_q[8+:8] <= wdata_q[8+:8];
-      if (strobe_q[15] & wstrb_q[2]) lock_first_line_q[16+:8] <= wdata_q[16+:8];
-      if (strobe_q[15] & wstrb_q[3]) lock_first_line_q[24+:8] <= wdata_q[24+:8];
-      if (strobe_q[16] & wstrb_q[0]) lock_first_line_q[32+:8] <= wdata_q[0+:8];
-      if (strobe_q[16] & wstrb_q[1]) lock_first_line_q[40+:8] <= wdata_q[8+:8];
-      if (strobe_q[16] & wstrb_q[2]) lock_first_line_q[48+:8] <= wdata_q[16+:8];
-      if (strobe_q[16] & wstrb_q[3]) lock_first_line_q[56+:8] <= wdata_q[24+:8];
-      if (strobe_q[17] & wstrb_q[0]) lock_first_line_q[64+:8] <= wdata_q[0+:8];
-      if (strobe_q[17] & wstrb_q[1]) lock_first_line_q[72+:8] <= wdata_q[8+:8];
-      if (strobe_q[17] & wstrb_q[2]) lock_first_line_q[80+:8] <= wdata_q[16+:8];
-      if (strobe_q[17] & wstrb_q[3]) lock_first_line_q[88+:8] <= wdata_q[24+:8];
-      if (strobe_q[18] & wstrb_q[0]) lock_first_line_q[96+:8] <= wdata_q[0+:8];
-      if (strobe_q[18] & wstrb_q[1]) lock_first_line_q[104+:8] <= wdata_q[8+:8];
-      if (strobe_q[18] & wstrb_q[2]) lock_first_line_q[112+:8] <= wdata_q[16+:8];
-      if (strobe_q[18] & wstrb_q[3]) lock_first_line_q[120+:8] <= wdata_q[24+:8];
-      if (strobe_q[19] & wstrb_q[0]) lock_last_line_q[0+:8] <= wdata_q[0+:8];
-      if (strobe_q[19] & wstrb_q[1]) lock_last_line_q[8+:8] <= wdata_q[8+:8];
-      if (strobe_q[19] & wstrb_q[2]) lock_last_line_q[16+:8] <= wdata_q[16+:8];
-      if (strobe_q[19] & wstrb_q[3]) lock_last_line_q[24+:8] <= wdata_q[24+:8];
-      if (strobe_q[20] & wstrb_q[0]) lock_last_line_q[32+:8] <= wdata_q[0+:8];
-      if (strobe_q[20] & wstrb_q[1]) lock_last_line_q[40+:8] <= wdata_q[8+:8];
-      if (strobe_q[20] & wstrb_q[2]) lock_last_line_q[48+:8] <= wdata_q[16+:8];
-      if (strobe_q[20] & wstrb_q[3]) lock_last_line_q[56+:8] <= wdata_q[24+:8];
-      if (strobe_q[21] & wstrb_q[0]) lock_last_line_q[64+:8] <= wdata_q[0+:8];
-      if (strobe_q[21] & wstrb_q[1]) lock_last_line_q[72+:8] <= wdata_q[8+:8];
-      if (strobe_q[21] & wstrb_q[2]) lock_last_line_q[80+:8] <= wdata_q[16+:8];
-      if (strobe_q[21] & wstrb_q[3]) lock_last_line_q[88+:8] <= wdata_q[24+:8];
-      if (strobe_q[22] & wstrb_q[0]) lock_last_line_q[96+:8] <= wdata_q[0+:8];
-      if (strobe_q[22] & wstrb_q[1]) lock_last_line_q[104+:8] <= wdata_q[8+:8];
-      if (strobe_q[22] & wstrb_q[2]) lock_last_line_q[112+:8] <= wdata_q[16+:8];
-      if (strobe_q[22] & wstrb_q[3]) lock_last_line_q[120+:8] <= wdata_q[24+:8];
-      if (strobe_q[23] & wstrb_q[0]) invalidate_first_line_q[0+:8] <= wdata_q[0+:8];
-      if (strobe_q[23] & wstrb_q[1]) invalidate_first_line_q[8+:8] <= wdata_q[8+:8];
-      if (strobe_q[23] & wstrb_q[2]) invalidate_first_line_q[16+:8] <= wdata_q[16+:8];
-      if (strobe_q[23] & wstrb_q[3]) invalidate_first_line_q[24+:8] <= wdata_q[24+:8];
-      if (strobe_q[24] & wstrb_q[0]) invalidate_last_line_q[0+:8] <= wdata_q[0+:8];
-      if (strobe_q[24] & wstrb_q[1]) invalidate_last_line_q[8+:8] <= wdata_q[8+:8];
-      if (strobe_q[24] & wstrb_q[2]) invalidate_last_line_q[16+:8] <= wdata_q[16+:8];
-      if (strobe_q[24] & wstrb_q[3]) invalidate_last_line_q[24+:8] <= wdata_q[24+:8];
+      if (strobe_q[15]) lock_first_line_q[0+:32] <= merged(lock_first_line_q[0+:32], wdata_q,
+          wstrb_q);
+      if (strobe_q[16]) lock_first_line_q[32+:32] <= merged(lock_first_line_q[32+:32], wdata_q,
+          wstrb_q);
+      if (strobe_q[17]) lock_first_line_q[64+:32] <= merged(lock_first_line_q[64+:32], wdata_q,
+          wstrb_q);
+      if (strobe_q[18]) lock_first_line_q[96+:32] <= merged(lock_first_line_q[96+:32], wdata_q,
+          wstrb_q);
+      if (strobe_q[19]) lock_last_line_q[0+:32] <= merged(lock_last_line_q[0+:32], wdata_q,
+          wstrb_q);
+      if (strobe_q[20]) lock_last_line_q[32+:32] <= merged(lock_last_line_q[32+:32], wdata_q,
+          wstrb_q);
+      if (strobe_q[21]) lock_last_line_q[64+:32] <= merged(lock_last_line_q[64+:32], wdata_q,
+          wstrb_q);
+      if (strobe_q[22]) lock_last_line_q[96+:32] <= merged(lock_last_line_q[96+:32], wdata_q,
+          wstrb_q);
+      if (strobe_q[23]) invalidate_first_line_q <= merged(invalidate_first_line_q, wdata_q,
+          wstrb_q);
+      if (strobe_q[24]) invalidate_last_line_q <= merged(invalidate_last_line_q, wdata_q, wstrb_q);
       invalidate_go_q <= wdata_q[0] & (strobe_q[25] & wstrb_q[0]);
       swap_control_abort_q <= wdata_q[1] & (strobe_q[26] & wstrb_q[0]);
       if (strobe_q[26] & wstrb_q[0]) swap_control_scheduler_enable_q <= wdata_q[0];
@@ -457,22 +433,14 @@ module cchip_chip_regs (
       if (strobe_q[27] & wstrb_q[2]) swap_command_force_q <= wdata_q[16];
       if (strobe_q[27] & wstrb_q[1]) swap_command_module_id_q <= wdata_q[8+:8];
       if (strobe_q[27] & wstrb_q[0]) swap_command_slot_q <= wdata_q[0+:8];
-      if (strobe_q[28] & wstrb_q[0]) swap_shutdown_limit_clocks_q[0+:8] <= wdata_q[0+:8];
-      if (strobe_q[28] & wstrb_q[1]) swap_shutdown_limit_clocks_q[8+:8] <= wdata_q[8+:8];
-      if (strobe_q[28] & wstrb_q[2]) swap_shutdown_limit_clocks_q[16+:8] <= wdata_q[16+:8];
-      if (strobe_q[28] & wstrb_q[3]) swap_shutdown_limit_clocks_q[24+:8] <= wdata_q[24+:8];
-      if (strobe_q[29] & wstrb_q[0]) swap_memory_limit_clocks_q[0+:8] <= wdata_q[0+:8];
-      if (strobe_q[29] & wstrb_q[1]) swap_memory_limit_clocks_q[8+:8] <= wdata_q[8+:8];
-      if (strobe_q[29] & wstrb_q[2]) swap_memory_limit_clocks_q[16+:8] <= wdata_q[16+:8];
-      if (strobe_q[29] & wstrb_q[3]) swap_memory_limit_clocks_q[24+:8] <= wdata_q[24+:8];
-      if (strobe_q[30] & wstrb_q[0]) swap_minimum_batch_pairs_q[0+:8] <= wdata_q[0+:8];
-      if (strobe_q[30] & wstrb_q[1]) swap_minimum_batch_pairs_q[8+:8] <= wdata_q[8+:8];
-      if (strobe_q[30] & wstrb_q[2]) swap_minimum_batch_pairs_q[16+:8] <= wdata_q[16+:8];
-      if (strobe_q[30] & wstrb_q[3]) swap_minimum_batch_pairs_q[24+:8] <= wdata_q[24+:8];
-      if (strobe_q[31] & wstrb_q[0]) swap_maximum_age_clocks_q[0+:8] <= wdata_q[0+:8];
-      if (strobe_q[31] & wstrb_q[1]) swap_maximum_age_clocks_q[8+:8] <= wdata_q[8+:8];
-      if (strobe_q[31] & wstrb_q[2]) swap_maximum_age_clocks_q[16+:8] <= wdata_q[16+:8];
-      if (strobe_q[31] & wstrb_q[3]) swap_maximum_age_clocks_q[24+:8] <= wdata_q[24+:8];
+      if (strobe_q[28]) swap_shutdown_limit_clocks_q <= merged(swap_shutdown_limit_clocks_q,
+          wdata_q, wstrb_q);
+      if (strobe_q[29]) swap_memory_limit_clocks_q <= merged(swap_memory_limit_clocks_q, wdata_q,
+          wstrb_q);
+      if (strobe_q[30]) swap_minimum_batch_pairs_q <= merged(swap_minimum_batch_pairs_q, wdata_q,
+          wstrb_q);
+      if (strobe_q[31]) swap_maximum_age_clocks_q <= merged(swap_maximum_age_clocks_q, wdata_q,
+          wstrb_q);
     end
 
   assign hwif_out_control_clear = control_clear_q;

@@ -178,6 +178,14 @@ module cchip_subsystem_regs (
   reg [31:0] minimum_batch_pairs_q;
   reg [31:0] maximum_age_clocks_q;
 
+  // a word whose bytes with a strobe are written
+  function [31:0] merged(input [31:0] old, input [31:0] data, input [3:0] strobes);
+    merged = {
+      strobes[3] ? data[24+:8] : old[24+:8], strobes[2] ? data[16+:8] : old[16+:8],
+      strobes[1] ? data[8+:8] : old[8+:8], strobes[0] ? data[0+:8] : old[0+:8]
+    };
+  endfunction
+
   always @(posedge clk)
     if (rst) begin
       control_clear_q <= 1'h0;
@@ -224,22 +232,10 @@ module cchip_subsystem_regs (
       if (strobe_q[3] & wstrb_q[0]) interrupt_enable_lost_q <= wdata_q[2];
       if (strobe_q[3] & wstrb_q[0]) interrupt_enable_error_q <= wdata_q[1];
       if (strobe_q[3] & wstrb_q[0]) interrupt_enable_done_q <= wdata_q[0];
-      if (strobe_q[4] & wstrb_q[0]) shutdown_limit_clocks_q[0+:8] <= wdata_q[0+:8];
-      if (strobe_q[4] & wstrb_q[1]) shutdown_limit_clocks_q[8+:8] <= wdata_q[8+:8];
-      if (strobe_q[4] & wstrb_q[2]) shutdown_limit_clocks_q[16+:8] <= wdata_q[16+:8];
-      if (strobe_q[4] & wstrb_q[3]) shutdown_limit_clocks_q[24+:8] <= wdata_q[24+:8];
-      if (strobe_q[5] & wstrb_q[0]) memory_limit_clocks_q[0+:8] <= wdata_q[0+:8];
-      if (strobe_q[5] & wstrb_q[1]) memory_limit_clocks_q[8+:8] <= wdata_q[8+:8];
-      if (strobe_q[5] & wstrb_q[2]) memory_limit_clocks_q[16+:8] <= wdata_q[16+:8];
-      if (strobe_q[5] & wstrb_q[3]) memory_limit_clocks_q[24+:8] <= wdata_q[24+:8];
-      if (strobe_q[6] & wstrb_q[0]) minimum_batch_pairs_q[0+:8] <= wdata_q[0+:8];
-      if (strobe_q[6] & wstrb_q[1]) minimum_batch_pairs_q[8+:8] <= wdata_q[8+:8];
-      if (strobe_q[6] & wstrb_q[2]) minimum_batch_pairs_q[16+:8] <= wdata_q[16+:8];
-      if (strobe_q[6] & wstrb_q[3]) minimum_batch_pairs_q[24+:8] <= wdata_q[24+:8];
-      if (strobe_q[7] & wstrb_q[0]) maximum_age_clocks_q[0+:8] <= wdata_q[0+:8];
-      if (strobe_q[7] & wstrb_q[1]) maximum_age_clocks_q[8+:8] <= wdata_q[8+:8];
-      if (strobe_q[7] & wstrb_q[2]) maximum_age_clocks_q[16+:8] <= wdata_q[16+:8];
-      if (strobe_q[7] & wstrb_q[3]) maximum_age_clocks_q[24+:8] <= wdata_q[24+:8];
+      if (strobe_q[4]) shutdown_limit_clocks_q <= merged(shutdown_limit_clocks_q, wdata_q, wstrb_q);
+      if (strobe_q[5]) memory_limit_clocks_q <= merged(memory_limit_clocks_q, wdata_q, wstrb_q);
+      if (strobe_q[6]) minimum_batch_pairs_q <= merged(minimum_batch_pairs_q, wdata_q, wstrb_q);
+      if (strobe_q[7]) maximum_age_clocks_q <= merged(maximum_age_clocks_q, wdata_q, wstrb_q);
     end
 
   assign hwif_out_control_clear = control_clear_q;
