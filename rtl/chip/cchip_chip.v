@@ -205,7 +205,7 @@ module cchip_chip #(
   wire [4*`CCHIP_RM_ID_W-1:0] slot_rm_id;
   wire [3:0] slot_decoupled;
   wire [4*`CCHIP_PHASE_W-1:0] slot_phase;
-  wire answered, refused_kind, refused_provider, count_swap, count_rejected, count_stall;
+  wire answered, refused_provider, count_swap, count_rejected, count_stall;
   wire [`CCHIP_KIND_W-1:0] answered_module;
   wire [8:0] events = {refused_provider, swap_events, chip_event_q};
   reg invalidate_q, invalidating_q;  // a command waits; one waits or is in progress
@@ -577,7 +577,6 @@ module cchip_chip #(
       .count_miss          (count_miss),
       .answered            (answered),
       .answered_module     (answered_module),
-      .refused_kind        (refused_kind),
       .refused_provider    (refused_provider),
       .slot_outstanding    (slot_outstanding),
       .slot_rm_id          (slot_rm_id),
@@ -631,7 +630,7 @@ module cchip_chip #(
       .m_axi_bresp         (m_axi_bresp)
   );
 
-  wire unused = &{1'b0, read_word, write_word, lock_first, lock_last, refused_kind};
+  wire unused = &{1'b0, read_word, write_word, lock_first, lock_last};
 
 endmodule
 `default_nettype wire

@@ -123,7 +123,6 @@ module cchip_chip_core #(
     // ---- slots, as in cchip_slots; their swaps: cchip_swaps
     output wire                           answered,            // an answer left, one clock
     output wire [      `CCHIP_KIND_W-1:0] answered_module,     // module of that answer, 0: none
-    output wire                           refused_kind,  // a pair of kind 0 was taken, one clock
     // a pair of a kind without a provider was taken, one clock
     output wire                           refused_provider,
     // of each of four slots: pairs inside
@@ -306,6 +305,7 @@ module cchip_chip_core #(
   wire [`CCHIP_QUERY_ANSWER_W-1:0] done_answer;
   wire [4:0] count_tests;
   wire [1:0] count_wait, count_again;
+  wire refused_kind;  // never: the leaves have no kind 0
   cchip_broad_phase #(
       .QUERIES   (QUERIES),
       .PAIRS     (PAIRS),
@@ -725,8 +725,9 @@ module cchip_chip_core #(
   assign count_error = count_query && code != {5'd0, `CCHIP_END_OK} &&
       code != {5'd0, `CCHIP_END_HOST};
 
-  wire unused = &{1'b0, start_epoch, count_tests, count_wait, count_again, waiting[COUNT_W-1:0],
-      queue_room[0], outstanding_reads[2*MISSES-1:MISSES], result_kind, result, result_tag};
+  wire unused = &{1'b0, refused_kind, start_epoch, count_tests, count_wait, count_again,
+      waiting[COUNT_W-1:0], queue_room[0], outstanding_reads[2*MISSES-1:MISSES], result_kind,
+      result, result_tag};
   always @(posedge clk)
     if (!block_rst[REST]) begin
       `CCHIP_ASSERT(a_kind_room, !(vertex_valid && vertex_last) || kind_room)
