@@ -14,13 +14,13 @@
 //                CCHIP_MEMORY_LIMIT_DEFAULT. Each counts from the clock on which it is written,
 //                in a swap in flight too: a lower one also for the clocks that have passed, a
 //                higher one, or 0, gives more time
-//   busy         a request during a swap is taken and answered BUSY; every request is answered by
-//                exactly one report
+//   busy         a request that is offered during a swap waits until the swap has ended; every
+//                request is answered by exactly one report
 //   clocks       cfg_error may come from any clock, as a level or for at least two clocks of clk: a
 //                shorter pulse may be lost (see cchip_swap_sequencer). The rest of the port belongs
 //                to clk
 //   cuts         every path but read_phase to read_clocks: each output comes from flip-flops,
-//                m_report_data through a multiplexer of two, swapped and rejected through its code
+//                swapped and rejected through the code of m_report_data
 //   reset        no swap, slots active, except one whose transfer had begun and not ended well:
 //                `half_q` outlives rst and keeps it stopped, decoupled and in reset until a good
 //                transfer

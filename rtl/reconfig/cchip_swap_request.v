@@ -3,8 +3,7 @@
 `include "cchip_defs.vh"
 // cchip_swap_request: the request that cchip_swap_sequencer works on, whether it is legal, and what
 // its slot looks like.
-//   request      s_swap_data of the clock with begins = 1; refuse_slot and refuse_module are those
-//                of the last clock with accept = 1
+//   request      s_swap_data of the clock with begins = 1
 //   illegal      there is no such slot or module, the bitstream is empty, not at a multiple of 64
 //                bytes, or ends beyond 4 GiB
 //   latency      1 clock from begins to the fields and to mine; 2 from a change of the slot, 3 from
@@ -18,8 +17,6 @@ module cchip_swap_request #(
     // {force, size, address, module, slot}
     input  wire [    `CCHIP_SWAP_REQUEST_W-1:0] s_swap_data,
     input  wire                                 begins,         // the swap of s_swap_data begins
-    // a request is accepted, or refused because a swap is in progress
-    input  wire                                 accept,
     // ---- the slots
     input  wire [                    SLOTS-1:0] quiet,  // bit of each slot: no pair is inside
     input  wire [                    SLOTS-1:0] decoupled,      // bit of each slot: it is decoupled
@@ -35,8 +32,6 @@ module cchip_swap_request #(
     output wire                                 forced,         // pairs may be given up
     // its slot, one-hot; 0 if there is no such slot
     output wire [                    SLOTS-1:0] mine,
-    output wire [         `CCHIP_SLOT_ID_W-1:0] refuse_slot,  // slot of the request that is refused
-    output wire [           `CCHIP_RM_ID_W-1:0] refuse_module,  // its module
     output wire                                 is_quiet,       // no pair is inside the slot
     output wire                                 is_decoupled,   // the slot is decoupled
     // its reset on configuration is in progress
@@ -54,13 +49,13 @@ module cchip_swap_request #(
   assign `CCHIP_SWAP_REQUEST_OF(s_swap_slot, s_swap_module, s_swap_address, s_swap_size,
       s_swap_force) = s_swap_data;
 
-  reg [`CCHIP_SLOT_ID_W-1:0] slot_q, refuse_slot_q;
-  reg [`CCHIP_RM_ID_W-1:0] module_q, refuse_module_q;
+  reg [`CCHIP_SLOT_ID_W-1:0] slot_q;
+  reg [`CCHIP_RM_ID_W-1:0] module_q;
   reg [31:0] address_q, size_q;
   reg force_q;
   reg [SLOTS-1:0] mine_q;
   integer s;
-  always @(posedge clk) begin
+  always @(posedge clk)
     if (begins) begin
       for (s = 0; s < SLOTS; s = s + 1) mine_q[s] <= s_swap_slot == s[`CCHIP_SLOT_ID_W-1:0];
       slot_q    <= s_swap_slot;
@@ -69,19 +64,12 @@ module cchip_swap_request #(
       size_q    <= s_swap_size;
       force_q   <= s_swap_force;
     end
-    if (accept) begin
-      refuse_slot_q   <= s_swap_slot;
-      refuse_module_q <= s_swap_module;
-    end
-  end
-  assign slot          = slot_q;
-  assign module_id     = module_q;
-  assign address       = address_q;
-  assign size          = size_q;
-  assign forced        = force_q;
-  assign mine          = mine_q;
-  assign refuse_slot   = refuse_slot_q;
-  assign refuse_module = refuse_module_q;
+  assign slot      = slot_q;
+  assign module_id = module_q;
+  assign address   = address_q;
+  assign size      = size_q;
+  assign forced    = force_q;
+  assign mine      = mine_q;
 
   wire [`CCHIP_RM_ID_W-1:0] shown;
   cchip_onehot_mux #(

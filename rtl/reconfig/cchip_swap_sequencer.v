@@ -13,8 +13,8 @@
 //                as many clocks: a region full of garbage may show any number on one clock.
 //   decision     whether a state ends, well or badly, is a register. Next state, clocks and slots
 //                follow from it a clock later, on which nothing else is decided.
-//   latency      every request is answered by exactly one report; one during a swap by BUSY, 2
-//                clocks later or 3
+//   latency      every request is answered by exactly one report; one that is offered during a swap
+//                is taken 2 clocks after the report of that swap
 //   bounds       SHUTDOWN: shutdown_limit; DECOUPLE, ROC, RECOUPLE: SLOT_LIMIT; HEADER and
 //                TRANSFER: error or timeout of the fetch, or their words are there; the rest: fixed
 //   limit        shutdown_limit: 1..2^32 - 1 clocks; 0 means CCHIP_SHUTDOWN_LIMIT_DEFAULT. It may
@@ -22,7 +22,7 @@
 //                after the change, a higher one, or 0, gives more time
 //   clocks       cfg_error may come from any clock: it passes two flip-flops. Everything else
 //                belongs to clk.
-//   cuts         every path: each output is a flip-flop, m_report_data one of two
+//   cuts         every path: each output is a flip-flop
 //   reset        no swap, slots active, except one whose transfer had begun and not ended well
 //                (cchip_swap_signals)
 module cchip_swap_sequencer #(
@@ -34,7 +34,7 @@ module cchip_swap_sequencer #(
     input  wire                                 clk,             // clock, rising edge
     input  wire                                 rst,             // synchronous reset, active high
     input  wire                                 s_swap_valid,    // a swap is requested
-    // the request is taken if s_swap_valid = 1 as well; 1 also during a swap
+    // the request is taken if s_swap_valid = 1 as well; 0 during a swap
     output wire                                 s_swap_ready,
     // the request: record SWAP_REQUEST, docs/hardware/definitions.md
     input  wire [    `CCHIP_SWAP_REQUEST_W-1:0] s_swap_data,
@@ -117,12 +117,9 @@ module cchip_swap_sequencer #(
   reg [3:0] state_q;
   wire idle = state_q == IDLE;
 
-  // ---- request; one that comes during a swap waits in the refusal for a clock without report
-  reg ready_q, refuse_q;
-  wire accept = s_swap_valid & ready_q;
-  wire begins = accept & idle;
-  wire [`CCHIP_SLOT_ID_W-1:0] refuse_slot;
-  wire [`CCHIP_RM_ID_W-1:0] refuse_module;
+  // ---- request
+  reg ready_q;  // 1 in IDLE only
+  wire begins = s_swap_valid & ready_q;
   wire forced;
   wire [SLOTS-1:0] mine;  // the request's slot, one-hot; 0 if there is no such slot
   wire [`CCHIP_PAIR_COUNT_W-1:0] given_up;
@@ -133,7 +130,6 @@ module cchip_swap_sequencer #(
       .clk          (clk),
       .s_swap_data  (s_swap_data),
       .begins       (begins),
-      .accept       (accept),
       .quiet        (quiet),
       .decoupled    (decoupled),
       .roc_busy     (roc_busy),
@@ -145,8 +141,6 @@ module cchip_swap_sequencer #(
       .size         (size),
       .forced       (forced),
       .mine         (mine),
-      .refuse_slot  (refuse_slot),
-      .refuse_module(refuse_module),
       .is_quiet     (quiet_q),
       .is_decoupled (decoupled_q),
       .is_roc_busy  (roc_busy_q),
@@ -328,23 +322,20 @@ module cchip_swap_sequencer #(
   assign turns = failing_q | (leaves & ~same_phase);
 
   // ---- phase and report
-  reg run_q, report_valid_q, refused_q, forced_q;
+  reg run_q, report_valid_q, forced_q;
   reg [`CCHIP_SWAP_W-1:0] code_q;
   reg [`CCHIP_PAIR_COUNT_W-1:0] lost_q;
-  wire refuses = refuse_q & ~reports;
   always @(posedge clk) begin
     if (idle) lost_q <= {`CCHIP_PAIR_COUNT_W{1'b0}};
     else if (state_q == DECOUPLE && forced_q && decoupled_q) lost_q <= given_up;
     if (state_q == SHUTDOWN) forced_q <= ~quiet_q & ~decoupled_q;
     if (deciding) code_q <= aborted ? `CCHIP_SWAP_ABORTED : fails ? code : `CCHIP_SWAP_OK;
-    refused_q <= refuses;
     if (rst) begin
       state_q <= IDLE;
       phase_q <= `CCHIP_PHASE_IDLE;
       abort_q <= 1'b0;
       run_q <= 1'b0;
       ready_q <= 1'b0;
-      refuse_q <= 1'b0;
       report_valid_q <= 1'b0;
       failing_q <= 1'b0;
       ending_q <= 1'b0;
@@ -360,9 +351,8 @@ module cchip_swap_sequencer #(
       end
       abort_q <= (abort_q | abort_swap) && state_q >= JUDGE && state_q <= MATCH && !failing_q;
       run_q <= ~failing_q & (leaves ? next == FETCH || next == TRANSFER : run_q);
-      refuse_q <= (accept & ~idle) | (refuse_q & reports);
-      ready_q <= ~((accept & ~idle) | (refuse_q & reports));
-      report_valid_q <= reports | refuses;
+      ready_q <= (idle & ~begins) | (state_q == REPORT);
+      report_valid_q <= reports;
     end
   end
 
@@ -391,10 +381,7 @@ module cchip_swap_sequencer #(
   assign s_swap_ready = ready_q;
   assign m_report_valid = report_valid_q;
   // slot, module_id and lost_q do not change in REPORT
-  assign m_report_data = refused_q
-      ? `CCHIP_SWAP_REPORT_OF(refuse_slot, refuse_module, `CCHIP_SWAP_BUSY,
-          {`CCHIP_PAIR_COUNT_W{1'b0}})
-      : `CCHIP_SWAP_REPORT_OF(slot, module_id, code_q, lost_q);
+  assign m_report_data = `CCHIP_SWAP_REPORT_OF(slot, module_id, code_q, lost_q);
   assign phase = phase_q;
   assign phase_clocks = clocks;
   assign busy = ~idle;
@@ -403,6 +390,7 @@ module cchip_swap_sequencer #(
   always @(posedge clk)
     if (!rst) begin
       `CCHIP_ASSERT(a_state, state_q <= REPORT)
+      `CCHIP_ASSERT(a_ready, idle || !ready_q)
     end
 
 endmodule

@@ -145,7 +145,8 @@ module cchip_swap_sequencer_properties (
       at_work: assert (phase != `CCHIP_PHASE_IDLE || stop == decouple);
       fetch: assert (!run || fetches);
       asked: assert (!m_report_valid || open_q != 2'd0);
-      answered: assert (open_q != 2'd3 && (phase != `CCHIP_PHASE_IDLE || open_q <= 2'd1));
+      answered: assert (open_q <= 2'd1 && (phase != `CCHIP_PHASE_IDLE || open_q == 2'd0));
+      waits: assert (!s_swap_ready || phase == `CCHIP_PHASE_IDLE);
       // the task `prove` leaves out the bound of ROC, which ends with a count of 31 clocks: it took too long
 `ifdef SKIP_ROC
       bounded: assert (phase == `CCHIP_PHASE_IDLE || phase == `CCHIP_PHASE_ROC || changed || (phase == `CCHIP_PHASE_SHUTDOWN && zero_q) || clocks_q <= SLOT_LIMIT + 8'd4);

@@ -94,11 +94,11 @@ class SwapBench : public sim::Agent {
     requests_.push_back(request);
     simulation_.run_until([&] { return requests_.empty(); }, 10, "a request to be taken");
   }
-  /// Sends requests one after the other, each as soon as the one before was taken.
-  void start_all(const std::vector<SwapRequest>& requests) {
+  /// Offers requests from now on, each as soon as the one before was taken.
+  void offer(const std::vector<SwapRequest>& requests) {
     requests_.insert(requests_.end(), requests.begin(), requests.end());
-    simulation_.run_until([&] { return requests_.empty(); }, 10 * requests.size(), "requests to be taken");
   }
+  std::size_t waiting() const { return requests_.size(); }  ///< offered, but not taken yet
   /// Waits for its report.
   SwapReport finish(std::uint64_t max_clocks = 5000) {
     const std::size_t before = reports_.size();
