@@ -20,11 +20,11 @@ QUAD_LEAVES ?= build/leaves/BLEND/Suzanne_248.blend.obj
 # more options of campaign-leaves, as --eta 2
 LEAF_ARGS ?=
 
-.PHONY: list release docs-layout peers robots sim-reconfig sim-traverse wave-of formal-all mutants probes test-gates test-debug test-asan test-arm64 cross-windows fuzz-tools fuzz campaign-build campaign campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-cluster campaign-chip campaign-chip-faults campaign-chip-swaps proof proof-campaign picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot coverage coverage-bins coverage-cpp bench-certificate bench-scene sdist test-sdist bench-python test-dask test-ply bench-chip fpga fpga-sweep fpga-quick asic asic-quick tidy deb
+.PHONY: list release docs-layout peers robots sim-reconfig sim-fabric sim-traverse wave-of formal-all mutants probes test-gates test-debug test-asan test-arm64 cross-windows fuzz-tools fuzz campaign-build campaign campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-cluster campaign-chip campaign-chip-faults campaign-chip-swaps proof proof-campaign picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot coverage coverage-bins coverage-cpp bench-certificate bench-scene sdist test-sdist bench-python test-dask test-ply bench-chip fpga fpga-sweep fpga-quick asic asic-quick tidy deb
 
 define RUN_GROUPS
 Try it
-  sim-reconfig/18_s sim-traverse table1/1_s table1-plot picture
+  sim-reconfig/18_s sim-fabric sim-traverse table1/1_s table1-plot picture
 Use the library
   deb sdist release
 Read
@@ -71,6 +71,11 @@ build/robots/requirements.txt: bench/peers/robot_requirements.txt
 sim-reconfig: $(RELEASE)/build.ninja ## run mixed meshes through two slots with real swaps, check every pair, write build/waves/sim-reconfig.fst
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip
 	$(RELEASE)/bin/cchip reconfig $(SIM_ARGS)
+
+# as in: scripts/run sim-fabric FABRIC_ARGS="--set point"
+FABRIC_ARGS ?=
+sim-fabric: ## exchange modules on an open FPGA fabric down to its configuration latches (Python 3.12, Debian's yosys, nextpnr-generic and iverilog); FABRIC_ARGS="--set point" for points against triangles
+	sim/fabric/fabric.py $(FABRIC_ARGS)
 
 sim-traverse: $(RELEASE)/build.ninja ## run queries of five pairs of meshes through the broad phase in RTL, check all against the model, write build/waves/sim-traverse.fst
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_traverse
