@@ -4,13 +4,12 @@
 //   stream       CCHIP_FABRIC_SYNC; frames, each an address word ([31:27] column, [19:0] frame, one
 //                bit of 20) and ROWS words, lowest row last; a word with bit 20 ends the stream.
 //                Words have the first byte of the payload lowest, the fabric's order is reversed
-//   strobe       one clock, on which the address word of the next frame may pass: a word a clock
+//   strobe       the second half of the clock after the last word: half a clock after the data have
+//                changed, a clock and a half before they change again. A word may come every clock
 //   fence        once `fenced` is 1, a frame outside the columns FIRST..LAST, or an address that
 //                names no frame or several, is not written; error is 1 from then to the next sync
-//   latency      1 clock from the last word of a frame to its strobe
-//   reset        none: the device is always ready; a stream that ends early is ended by the next
-//                sync word where an address is expected, so CCHIP_FABRIC_SYNC must be repeated
-//                by software only after `abandon`, which drops what has begun
+//   abandon      drops a stream that ended early and waits for the next sync word
+//   reset        none: a device waits for the sync word after power-up
 module cchip_fabric_frames #(
     parameter integer ROWS = 8,     // rows of the fabric; legal: 1..31
     parameter integer COLUMNS = 10, // columns of the fabric; legal: 1..32
@@ -48,7 +47,7 @@ module cchip_fabric_frames #(
   wire one_frame = word[19:0] != 20'd0 && (word[19:0] & (word[19:0] - 20'd1)) == 20'd0;
   wire inside = column >= FIRST && column <= LAST;
   wire allowed = one_frame && (inside || !fenced);
-  // the address is kept beside the strobe: that of the next frame comes on the same clock
+  // the next frame's address comes on the clock of the strobe
   reg [4:0] next_column_q;
   reg [19:0] next_select_q;
 
@@ -88,7 +87,7 @@ module cchip_fabric_frames #(
   genvar c;
   generate
     for (c = 0; c < COLUMNS; c = c + 1) begin : gen_column
-      assign strobe[20*c+:20] = strobe_q && column_q == c ? select_q : 20'd0;
+      assign strobe[20*c+:20] = strobe_q && !clk && column_q == c ? select_q : 20'd0;
     end
   endgenerate
   assign frame   = frame_q;

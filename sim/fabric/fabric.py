@@ -129,13 +129,14 @@ def generate(kind, work, tools_at):
     settings.write_text("".join(line + "\n" for line in settings.read_text().splitlines() if "FAB_PDK" not in line))
     script = work / "generate.tcl"
     script.write_text("load_fabric\nrun_FABulous_fabric\nexit\n")
-    run([tools_at / "FABulous", "-p", project, "script", script, "--type", "tcl"], work / "generate.log", 600)
+    run([tools_at / "FABulous", "-p", project, "script", script, "--type", "tcl"], work / "generate.log", 3600)
     lighten(project, work / "fabric")
     return project
 
 
 def light_memory(text):
-    """One register a frame in place of a module for each latch."""
+    """One register a frame in place of a module for each latch. The data must not change while the strobe is high,
+    which cchip_fabric_frames promises and the bench checks: sensitive to data, each word would wake every frame."""
     name = re.search(r"^module (\w+)", text, re.M).group(1)
     latches = re.findall(r"\.D\(FrameData\[(\d+)\]\),\s*\.E\(FrameStrobe\[(\d+)\]\),\s*\.Q\(ConfigBits\[(\d+)\]\)", text)
     bits = int(re.search(r"NoConfigBits=(\d+)", text).group(1))
@@ -146,7 +147,7 @@ def light_memory(text):
              "  input [31:0] FrameData, input [19:0] FrameStrobe,",
              f"  output [{bits - 1}:0] ConfigBits, ConfigBits_N);"]
     for frame in sorted({frame for frame, _ in place.values()}):
-        lines.append(f"  reg [31:0] f{frame}; always @(FrameStrobe[{frame}], FrameData) "
+        lines.append(f"  reg [31:0] f{frame}; always @(FrameStrobe[{frame}]) "
                      f"if (FrameStrobe[{frame}]) f{frame} = FrameData;")
     lines.append("  assign ConfigBits = {" + ", ".join(f"f{place[q][0]}[{place[q][1]}]"
                                                        for q in reversed(range(bits))) + "};")
@@ -154,7 +155,7 @@ def light_memory(text):
 
 
 def light_matrix(text):
-    """Each multiplexer of a switch matrix as one expression, with a delay: a wrong bit can make a ring of wires alone."""
+    """Each multiplexer of a switch matrix as one expression."""
     inputs = {name: [one.strip() for one in names.split(",")][::-1]
               for name, names in re.findall(r"assign (\w+)_input = \{([^}]*)\};", text)}
 
@@ -171,7 +172,7 @@ def light_matrix(text):
         for number in range(1 << len(select)):
             wire = re.match(r"(\w+)_input\[(\d+)\]", pins[f"A{number}"])
             data.append(inputs[wire.group(1)][int(wire.group(2))] if wire else pins[f"A{number}"])
-        return f"assign #1 {pins['X']} = {chosen(data, select)};"
+        return f"assign {pins['X']} = {chosen(data, select)};"
 
     text = re.sub(r"cus_mux\d+ \w+\s*\((.*?)\n\s*\);", one, text, flags=re.S)
     return re.sub(r"(assign|wire\s*\[[^\]]*\])\s*\w+_input\b[^;]*;", "", text)
@@ -359,13 +360,22 @@ def stream(frames, columns):
     return struct.pack(f">{len(words) + 1}I", *words, END)
 
 
-def faulty(images, kind):
-    """Bitstreams of module 1 that end badly, each in its own way."""
+def bit_of_lut(project):
+    """Frame and bit of the first entry of a logic tile's first LUT."""
+    text = (project / "Tile" / "LUT4AB" / "LUT4AB_ConfigMem.v").read_text()
+    match = re.search(r"\.D\(FrameData\[(\d+)\]\),\s*\.E\(FrameStrobe\[(\d+)\]\),\s*\.Q\(ConfigBits\[0\]\)", text)
+    return int(match.group(2)), int(match.group(1))
+
+
+def faulty(images, kind, project):
+    """Bitstreams of module 1 that end badly, each in its own way. The wrong bit is one of a LUT: in the wiring it could
+    close a ring without delay, and the simulation would not end."""
     good, payload = images["MODULE_1"], bytearray(images["MODULE_1"][bitstream.HEADER:])
     words = 1 + kind.rows  # of a frame
     images["TRUNCATED"] = good[:len(good) // 2 & ~3]
-    at = bitstream.HEADER + 4 * (1 + 30 * words + 3)
-    images["FLIPPED"] = good[:at] + bytes([good[at] ^ 0x10]) + good[at + 1:]
+    frame, bit = bit_of_lut(project)
+    at = bitstream.HEADER + 4 * (1 + (FRAMES + frame) * words + 1 + kind.rows // 2) + 3 - bit // 8
+    images["FLIPPED"] = good[:at] + bytes([good[at] ^ 1 << bit % 8]) + good[at + 1:]
     at = 4 * (1 + 40 * words)
     address = struct.unpack(">I", payload[at:at + 4])[0]
     payload[at:at + 4] = struct.pack(">I", 1 << 27 | address & (1 << 27) - 1)
@@ -405,7 +415,7 @@ def build(kind, work, tools_at):
             boot = stream({place: data if place[0] in region else neighbour[place] for place, data in frames.items()},
                           range(len(kind.columns)))
     if 1 in kind.modules:
-        faulty(images, kind)
+        faulty(images, kind, project)
     write_images(work, images, boot)
 
 
@@ -413,7 +423,8 @@ def build(kind, work, tools_at):
 
 def simulate(name, kind, work, options):
     defines = [f"-DFABRIC_ROWS={kind.rows}", f"-DFABRIC_COLUMNS={len(kind.columns)}", f"-DFABRIC_FIRST={kind.first}",
-               f"-DPERIOD={kind.period}", f"-DPAIRS={kind.pairs}", f"-DGOLD={kind.top}", f"-DSET_{name.upper()}"]
+               f"-DPERIOD={kind.period}", f"-DLUT_DELAY={kind.period * 3 // 10}", f"-DPAIRS={kind.pairs}",
+               f"-DGOLD={kind.top}", f"-DSET_{name.upper()}"]
     own = [HERE / file for file in ("bench.v", "cchip_pr_virtual.v", "cchip_fabric_frames.v", "fabric_models.v",
                                     "small_region.v")]
     run(["iverilog", "-g2005", "-o", work / "bench.vvp", "-s", "bench", "-s", "fabric_state", *defines,

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 `timescale 1ns / 1ps
 // Cells of the fabric for the simulation, lighter than the generated ones, with two properties that these lack:
-//   delay        a LUT takes 4 ns, a multiplexer of the wiring 1 ns (fabric.py): half-written logic forms rings, and a
-//                ring without delay never lets time pass. No timing of silicon
+//   delay        of a LUT, 4 ns, or LUT_DELAY while frames are written, as defined by fabric.py; wires have none.
+//                Half-written logic forms rings: one without delay never lets time pass, and one that oscillates often
+//                in a clock takes hours. The neighbour's path of two LUTs must fit in a clock. No timing of silicon
 //   settled      once the configuration is whole a flip-flop takes 0 or 1 at random where it would store X. Silicon has
 //                no X; while frames are written X is kept, because it is what gets counted
 module fabric_state;
   reg settled = 1'b0;
+  wire [15:0] delay = settled ? 16'd4 : `LUT_DELAY;
 endmodule
 
 module LUT4c_frame_config_dffesr #(
@@ -28,7 +30,7 @@ module LUT4c_frame_config_dffesr #(
     i0 ? ConfigBits[7] : ConfigBits[6], i0 ? ConfigBits[5] : ConfigBits[4],
     i0 ? ConfigBits[3] : ConfigBits[2], i0 ? ConfigBits[1] : ConfigBits[0]};
   wire lut;
-  assign #4 lut = I[3]
+  assign #(fabric_state.delay) lut = I[3]
       ? (I[2] ? (I[1] ? by_i0[7] : by_i0[6]) : (I[1] ? by_i0[5] : by_i0[4]))
       : (I[2] ? (I[1] ? by_i0[3] : by_i0[2]) : (I[1] ? by_i0[1] : by_i0[0]));
   reg flop;
