@@ -4,8 +4,8 @@
 `include "cchip_defs.vh"
 // bench: bitstreams in memory -> cchip_config_controller -> frames of a fabric -> the slot behind cchip_pr_decoupler.
 //   static side  what leaves cchip_pr_slot, and a neighbour in the other columns of the fabric, watched on every clock
-//   RTL beside   the module's RTL gets what the region gets; valid, idle and number are compared on every clock on which
-//                the slot is coupled, the data of an answer with each answer
+//   RTL beside   the module's RTL gets what the region gets; valid, idle and number are compared on every clock on
+//                which the slot is coupled, the data with each answer
 //   plusargs     without_decoupler: the static side sees the region's outputs as they are; without_roc: the region is
 //                neither held in reset during a swap nor reset after it; seed=N
 // Defined by fabric.py: FABRIC_ROWS, FABRIC_COLUMNS, FABRIC_FIRST, PERIOD (ns), PAIRS (a swap), GOLD (module),
@@ -168,8 +168,8 @@ module bench;
   assign {static_idle, static_rm_id, static_data, static_valid} =
       without_decoupler ? raw_q : {slot_idle, slot_rm_id, slot_data, slot_valid};
 
-  // ---- the RTL beside it: one of each module; their reset also on the clocks on which the region is cut off, so that a
-  //      region that was not reset is found
+  // ---- the RTL beside it: one of each module; their reset also on the clocks on which the region is cut off, so
+  //      that a region that was not reset is found
   reg [7:0] current = 8'd0;  // module that should be in the region
   reg compared = 1'b0;
   wire g_rst = u_slot.region_rst_q || decoupled;
@@ -222,7 +222,8 @@ module bench;
   // ---- counts; every signal is read at a rising edge, as the next register reads it
   integer swaps = 0, pairs = 0, differences = 0, static_wrong = 0, leaked = 0, failures = 0;
   integer compared_clocks = 0, watched = 0, watched_in_swaps = 0;
-  integer written = 0, x_clocks = 0, other_clocks = 0, right_clocks = 0, blank_clocks = 0, changes = 0, false_answers = 0;
+  integer written = 0, x_clocks = 0, other_clocks = 0, right_clocks = 0, blank_clocks = 0, changes = 0;
+  integer false_answers = 0;
   reg [35:0] last_raw = 36'd0;
   wire writing = u_slot.gen_simulation.u_virtual.writing;
   wire [35:0] raw = {r_idle, r_rm_id, r_data, r_valid};
@@ -356,10 +357,12 @@ module bench;
         swaps = swaps + 1;
         current <= module_id;
       end else target <= current;
-      $display("swap to %0d: code %0d, %0d clocks, %0d of them TRANSFER; %0d clocks while frames were written: %0d with X, ",
-               module_id, report[`CCHIP_SWAP_REPORT_CODE], clocks - began, read_clocks, written, x_clocks,
-               "%0d with a wrong number, %0d with the old or new number, %0d with the blank's, %0d with changes, ",
-               other_clocks, right_clocks, blank_clocks, changes, "%0d false answers", false_answers);
+      $display("swap to %0d: code %0d, %0d clocks, %0d of them TRANSFER", module_id,
+               report[`CCHIP_SWAP_REPORT_CODE], clocks - began, read_clocks);
+      if (written != 0)
+        $display("  while frames were written, %0d clocks: %0d with X, %0d with a wrong number, ", written, x_clocks,
+                 other_clocks, "%0d with the old or new number, %0d with the blank's, ", right_clocks, blank_clocks,
+                 "%0d with changes, %0d answers to no pair", changes, false_answers);
       if (expected == `CCHIP_SWAP_OK)
         $display("  outputs before the swap %h, before the reset on configuration %h, now %h", before_swap, before_roc,
                  raw);
@@ -403,28 +406,29 @@ module bench;
     traffic;
     swap(8'd2, MODULE_2_AT, MODULE_2_SIZE, `CCHIP_SWAP_OK, 1'b1);
     traffic;
-    swap(8'd0, MODULE_0_AT, MODULE_0_SIZE, `CCHIP_SWAP_OK, 1'b1);
-    repeat (40) @(posedge clk);
-    swap(8'd2, MODULE_2_AT, MODULE_2_SIZE, `CCHIP_SWAP_OK, 1'b0);
-    traffic;
-    // a truncated one: refused by its header, the module works on
-    swap(8'd1, TRUNCATED_AT, TRUNCATED_SIZE, `CCHIP_SWAP_LENGTH, 1'b1);
-    check(!decoupled && static_rm_id === 8'd2, "the slot after a truncated bitstream");
-    traffic;
-    // one with a wrong bit: the frames are written, the slot stays cut off and in reset
-    swap(8'd1, FLIPPED_AT, FLIPPED_SIZE, `CCHIP_SWAP_CRC, 1'b0);
-    check(decoupled && hold_reset && stop, "the slot after a wrong bit");
-    repeat (100) @(posedge clk);
-    swap(8'd1, MODULE_1_AT, MODULE_1_SIZE, `CCHIP_SWAP_OK, 1'b0);
-    traffic;
-    // one with a frame for a column of the neighbour, and a right CRC
-    swap(8'd1, STRAY_AT, STRAY_SIZE, `CCHIP_SWAP_SAME, 1'b0);
-    swap(8'd2, MODULE_2_AT, MODULE_2_SIZE, `CCHIP_SWAP_OK, 1'b0);
-    traffic;
-    swap(8'd1, STRAY_AT, STRAY_SIZE, `CCHIP_SWAP_DEVICE, 1'b0);
-    check(decoupled && hold_reset && stop, "the slot after a stray frame");
-    swap(8'd1, MODULE_1_AT, MODULE_1_SIZE, `CCHIP_SWAP_OK, 1'b0);
-    traffic;
+    // a run that must fail has shown it by now
+    if (!without_decoupler && !without_roc) begin
+      swap(8'd0, MODULE_0_AT, MODULE_0_SIZE, `CCHIP_SWAP_OK, 1'b1);
+      repeat (40) @(posedge clk);
+      swap(8'd2, MODULE_2_AT, MODULE_2_SIZE, `CCHIP_SWAP_OK, 1'b0);
+      traffic;
+      // a truncated one: refused by its header, the module works on
+      swap(8'd1, TRUNCATED_AT, TRUNCATED_SIZE, `CCHIP_SWAP_LENGTH, 1'b1);
+      check(!decoupled && static_rm_id === 8'd2, "the slot after a truncated bitstream");
+      traffic;
+      // one with a wrong bit: the frames are written, the slot stays cut off and in reset
+      swap(8'd1, FLIPPED_AT, FLIPPED_SIZE, `CCHIP_SWAP_CRC, 1'b0);
+      check(decoupled && hold_reset && stop, "the slot after a wrong bit");
+      repeat (40) @(posedge clk);
+      swap(8'd2, MODULE_2_AT, MODULE_2_SIZE, `CCHIP_SWAP_OK, 1'b0);
+      traffic;
+      // one with a frame for a column of the neighbour, and a right CRC
+      swap(8'd1, STRAY_AT, STRAY_SIZE, `CCHIP_SWAP_DEVICE, 1'b0);
+      check(decoupled && hold_reset && stop, "the slot after a stray frame");
+      repeat (40) @(posedge clk);
+      swap(8'd1, MODULE_1_AT, MODULE_1_SIZE, `CCHIP_SWAP_OK, 1'b0);
+      traffic;
+    end
 `else
     swap(8'd4, MODULE_4_AT, MODULE_4_SIZE, `CCHIP_SWAP_OK, 1'b0);
     traffic;

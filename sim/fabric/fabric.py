@@ -5,14 +5,14 @@ fabric, places and routes each module inside its region, packs the frames for cc
 
 usage: fabric.py [--set small|point] [--seed N] [--without-decoupler | --without-roc] [--keep]
 
---set      small (the default): two small modules and a blank on 10 x 8 tiles, with faulty bitstreams, a minute or two.
+--set      small (the default): two small modules and a blank on 10 x 8 tiles, with faulty bitstreams, three minutes.
            point: the test of points against triangles and a blank on 28 x 26 tiles, about a quarter of an hour, 7 GB
 --seed     of the traffic (default 1)
 --keep     takes the fabric and the bitstreams of an earlier run as they are
 --without-decoupler, --without-roc   leave this part out, to see that its absence is found: the run must then fail
 
-Needs Python 3.12 or newer for FABulous (installed from PyPI below build/fabric), and Debian's yosys, nextpnr-generic and
-iverilog. Last line: fabric swaps=N pairs=N differences=0 static_wrong=0 leaked=0. Exit codes: 0 right, 1 wrong, 2 bad
+Needs Python 3.12 or newer for FABulous (installed from PyPI below build/fabric), and Debian's yosys, nextpnr-generic
+and iverilog. Last line: fabric swaps=N pairs=N differences=0 static_wrong=0 leaked=0. Exit codes: 0 right, 1 wrong, 2 bad
 arguments or no tool."""
 import argparse
 import dataclasses
@@ -39,6 +39,7 @@ FRAMES = 20  # of a column
 PINS_IN, PINS_OUT, PINS_NEIGHBOUR = 42, 36, (8, 16)
 RTL = ROOT / "rtl"
 ZERO = "1'b0"
+LATCH = r"\.D\(FrameData\[(\d+)\]\),\s*\.E\(FrameStrobe\[(\d+)\]\),\s*"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -54,7 +55,7 @@ class Set:
     seconds: int  # bound of the simulation
 
 
-SETS = {"small": Set("W" + 8 * "L" + "I", 8, 5, (0, 1, 2), "small_region", 200, 40, 1200),
+SETS = {"small": Set("W" + 8 * "L" + "I", 8, 5, (0, 1, 2), "small_region", 400, 20, 1200),
         "point": Set("W" + 26 * "L" + "I", 26, 3, (0, 4), "cchip_pr_region", 800, 24, 3600)}
 TILES = {"W": ("NULL", "W_IO", "NULL"), "L": ("N_term_single", "LUT4AB", "S_term_single"),
          "I": ("N_term_RAM_IO", "RAM_IO", "S_term_RAM_IO")}
@@ -138,7 +139,7 @@ def light_memory(text):
     """One register a frame in place of a module for each latch. The data must not change while the strobe is high,
     which cchip_fabric_frames promises and the bench checks: sensitive to data, each word would wake every frame."""
     name = re.search(r"^module (\w+)", text, re.M).group(1)
-    latches = re.findall(r"\.D\(FrameData\[(\d+)\]\),\s*\.E\(FrameStrobe\[(\d+)\]\),\s*\.Q\(ConfigBits\[(\d+)\]\)", text)
+    latches = re.findall(LATCH + r"\.Q\(ConfigBits\[(\d+)\]\)", text)
     bits = int(re.search(r"NoConfigBits=(\d+)", text).group(1))
     place = {int(q): (int(frame), int(bit)) for bit, frame, q in latches}
     if sorted(place) != list(range(bits)):
@@ -155,7 +156,7 @@ def light_memory(text):
 
 
 def light_matrix(text):
-    """Each multiplexer of a switch matrix as one expression."""
+    """Each multiplexer of a switch matrix as one expression, with a delay: half-written wires form rings, too."""
     inputs = {name: [one.strip() for one in names.split(",")][::-1]
               for name, names in re.findall(r"assign (\w+)_input = \{([^}]*)\};", text)}
 
@@ -172,7 +173,7 @@ def light_matrix(text):
         for number in range(1 << len(select)):
             wire = re.match(r"(\w+)_input\[(\d+)\]", pins[f"A{number}"])
             data.append(inputs[wire.group(1)][int(wire.group(2))] if wire else pins[f"A{number}"])
-        return f"assign {pins['X']} = {chosen(data, select)};"
+        return f"assign #1 {pins['X']} = {chosen(data, select)};"
 
     text = re.sub(r"cus_mux\d+ \w+\s*\((.*?)\n\s*\);", one, text, flags=re.S)
     return re.sub(r"(assign|wire\s*\[[^\]]*\])\s*\w+_input\b[^;]*;", "", text)
@@ -363,13 +364,12 @@ def stream(frames, columns):
 def bit_of_lut(project):
     """Frame and bit of the first entry of a logic tile's first LUT."""
     text = (project / "Tile" / "LUT4AB" / "LUT4AB_ConfigMem.v").read_text()
-    match = re.search(r"\.D\(FrameData\[(\d+)\]\),\s*\.E\(FrameStrobe\[(\d+)\]\),\s*\.Q\(ConfigBits\[0\]\)", text)
+    match = re.search(LATCH + r"\.Q\(ConfigBits\[0\]\)", text)
     return int(match.group(2)), int(match.group(1))
 
 
 def faulty(images, kind, project):
-    """Bitstreams of module 1 that end badly, each in its own way. The wrong bit is one of a LUT: in the wiring it could
-    close a ring without delay, and the simulation would not end."""
+    """Bitstreams of module 1 that end badly, each in its own way. The wrong bit is one of a LUT."""
     good, payload = images["MODULE_1"], bytearray(images["MODULE_1"][bitstream.HEADER:])
     words = 1 + kind.rows  # of a frame
     images["TRUNCATED"] = good[:len(good) // 2 & ~3]
