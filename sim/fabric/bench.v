@@ -123,7 +123,7 @@ module bench;
   reg booting = 1'b1, boot_valid = 1'b0;
   reg [31:0] boot_data;
   wire fenced = !booting;
-  wire abandon = !booting && phase == `CCHIP_PHASE_RESET;
+  wire abandon = !booting && (phase == `CCHIP_PHASE_DECOUPLE || phase == `CCHIP_PHASE_RESET);
   reg vertex_valid = 1'b0;
   reg [39:0] vertex = 40'd0;
   wire slot_valid, slot_idle;

@@ -8,7 +8,7 @@
 //                changed, a clock and a half before they change again. A word may come every clock
 //   fence        once `fenced` is 1, a frame outside the columns FIRST..LAST, or an address that
 //                names no frame or several, is not written; error is 1 from then to the next sync
-//   abandon      drops a stream that ended early and waits for the next sync word
+//   abandon      drops a stream that ended early and its error, and waits for the next sync word
 //   reset        none: a device waits for the sync word after power-up
 module cchip_fabric_frames #(
     parameter integer ROWS = 8,     // rows of the fabric; legal: 1..31
@@ -53,8 +53,10 @@ module cchip_fabric_frames #(
 
   always @(posedge clk) begin
     strobe_q <= 1'b0;
-    if (abandon) state_q <= WAIT;
-    else if (cfg_valid)
+    if (abandon) begin
+      state_q <= WAIT;
+      error_q <= 1'b0;
+    end else if (cfg_valid)
       case (state_q)
         WAIT:
         if (word == SYNC) begin
