@@ -2,13 +2,18 @@
 `timescale 1ns / 1ps
 `default_nettype none
 `include "cchip_defs.vh"
-// bench: bitstreams in memory -> cchip_config_controller -> frames of a fabric -> the slot behind cchip_pr_decoupler.
-//   static side  what leaves cchip_pr_slot, and a neighbour in the other columns of the fabric, watched on every clock
-//   RTL beside   the module's RTL gets what the region gets; valid, idle and number are compared on every clock on
+// bench: bitstreams in memory -> cchip_config_controller -> frames of a fabric -> the slot behind
+// cchip_pr_decoupler.
+//   static side  what leaves cchip_pr_slot, and a neighbour in the other columns of the fabric,
+//                watched on every clock
+//   RTL beside   the module's RTL gets what the region gets; valid, idle and number are compared on
+//                every clock on
 //                which the slot is coupled, the data with each answer
-//   plusargs     without_decoupler: the static side sees the region's outputs as they are; without_roc: the region is
+//   plusargs     without_decoupler: the static side sees the region's outputs as they are;
+//                without_roc: the region is
 //                neither held in reset during a swap nor reset after it; seed=N
-// Defined by fabric.py: FABRIC_ROWS, FABRIC_COLUMNS, FABRIC_FIRST, PERIOD (ns), PAIRS (a swap), GOLD (module),
+// Defined by fabric.py: FABRIC_ROWS, FABRIC_COLUMNS, FABRIC_FIRST, PERIOD (ns), PAIRS (a swap),
+// GOLD (module),
 // SET_SMALL or SET_POINT.
 module bench;
   `include "images.vh"
@@ -65,7 +70,8 @@ module bench;
   wire [31:0] read_clocks;
   wire port_valid, stall;
   wire [31:0] port_data;
-  integer outstanding = 0;  // pairs between their first vertex and their answer, as the static side counts
+  integer outstanding = 0;  // pairs between their first vertex and their answer,
+      as the static side counts
   reg stop_q = 1'b0;
   always @(posedge clk) stop_q <= stop;
 
@@ -168,7 +174,8 @@ module bench;
   assign {static_idle, static_rm_id, static_data, static_valid} =
       without_decoupler ? raw_q : {slot_idle, slot_rm_id, slot_data, slot_valid};
 
-  // ---- the RTL beside it: one of each module; their reset also on the clocks on which the region is cut off, so
+  // ---- the RTL beside it: one of each module; their reset also on the clocks on which the region
+  // is cut off, so
   //      that a region that was not reset is found
   reg [7:0] current = 8'd0;  // module that should be in the region
   reg compared = 1'b0;
@@ -222,7 +229,8 @@ module bench;
   // ---- counts; every signal is read at a rising edge, as the next register reads it
   integer swaps = 0, pairs = 0, differences = 0, static_wrong = 0, leaked = 0, failures = 0;
   integer compared_clocks = 0, watched = 0, watched_in_swaps = 0;
-  integer written = 0, x_clocks = 0, other_clocks = 0, right_clocks = 0, blank_clocks = 0, changes = 0;
+  integer written = 0, x_clocks = 0, other_clocks = 0, right_clocks = 0, blank_clocks = 0,
+      changes = 0;
   integer false_answers = 0;
   reg [35:0] last_raw = 36'd0;
   wire writing = u_slot.gen_simulation.u_virtual.writing;
@@ -236,8 +244,10 @@ module bench;
       watched <= watched + 1;
       if (busy) watched_in_swaps <= watched_in_swaps + 1;
       if (neighbour_out !== signature) static_wrong <= static_wrong + 1;
-      // what passes to the static side: nothing while cut off; else answers to pairs, and the module's number
-      if (decoupled ? {static_valid, static_data, static_rm_id, static_idle} !== {1'b0, 26'd0, 8'd0, 1'b1}
+      // what passes to the static side: nothing while cut off; else answers to pairs, and the
+      // module's number
+      if (decoupled ? {static_valid, static_data, static_rm_id, static_idle} !== {1'b0, 26'd0,
+          8'd0, 1'b1}
           : (static_valid !== 1'b0 && !(static_valid === 1'b1 && outstanding != 0))
             || (static_rm_id !== 8'd0 && static_rm_id !== current && static_rm_id !== target))
         leaked <= leaked + 1;
@@ -257,7 +267,8 @@ module bench;
       // the RTL beside it
       if (compared) begin
         compared_clocks <= compared_clocks + 1;
-        if (r_valid !== g_valid || r_idle !== g_idle || r_rm_id !== current || (g_valid && r_data !== g_data))
+        if (r_valid !== g_valid || r_idle !== g_idle || r_rm_id !== current || (g_valid &&
+            r_data !== g_data))
           differences <= differences + 1;
       end
     end
@@ -270,7 +281,8 @@ module bench;
   always @(posedge clk) begin
     if (neighbour_runs) begin
       signature <= neighbour_in[0] ? 16'd1 : {signature[14:0],
-          signature[15] ^ signature[13] ^ signature[12] ^ signature[10]} ^ {9'd0, neighbour_in[7:1]};
+          signature[15] ^ signature[13] ^ signature[12] ^ signature[10]} ^ {9'd0,
+              neighbour_in[7:1]};
       neighbour_in <= {$random(seed), 1'b0};
     end
   end
@@ -327,9 +339,11 @@ module bench;
   // ---- swaps; `open`: a pair is sent just before, which the module must answer first
   integer began, bound;
   reg [35:0] before_swap, before_roc;
-  task swap(input [7:0] module_id, input [31:0] at, input [31:0] size, input [3:0] expected, input open);
+  task swap(input [7:0] module_id, input [31:0] at, input [31:0] size, input [3:0] expected,
+      input open);
     begin
-      written = 0; x_clocks = 0; other_clocks = 0; right_clocks = 0; blank_clocks = 0; changes = 0; false_answers = 0;
+      written = 0; x_clocks = 0; other_clocks = 0; right_clocks = 0; blank_clocks = 0; changes = 0;
+          false_answers = 0;
       if (open) pair(8'd200);
       @(posedge clk);
       target <= module_id;
@@ -360,11 +374,14 @@ module bench;
       $display("swap to %0d: code %0d, %0d clocks, %0d of them TRANSFER", module_id,
                report[`CCHIP_SWAP_REPORT_CODE], clocks - began, read_clocks);
       if (written != 0)
-        $display("  while frames were written, %0d clocks: %0d with X, %0d with a wrong number, ", written, x_clocks,
-                 other_clocks, "%0d with the old or new number, %0d with the blank's, ", right_clocks, blank_clocks,
+        $display("  while frames were written, %0d clocks: %0d with X, %0d with a wrong number, ",
+            written, x_clocks,
+                 other_clocks, "%0d with the old or new number, %0d with the blank's, ",
+                     right_clocks, blank_clocks,
                  "%0d with changes, %0d answers to no pair", changes, false_answers);
       if (expected == `CCHIP_SWAP_OK)
-        $display("  outputs before the swap %h, before the reset on configuration %h, now %h", before_swap, before_roc,
+        $display("  outputs before the swap %h, before the reset on configuration %h, now %h",
+            before_swap, before_roc,
                  raw);
       $fflush;
       repeat (4) @(posedge clk);
@@ -396,7 +413,8 @@ module bench;
     @(posedge clk);
     armed <= 1'b1;
     repeat (20) @(posedge clk);
-    $display("configured: %0d words, all %0d columns, clock %0d", BOOT_WORDS, `FABRIC_COLUMNS, clocks);
+    $display("configured: %0d words, all %0d columns, clock %0d", BOOT_WORDS, `FABRIC_COLUMNS,
+        clocks);
     $fflush;
     check(static_rm_id === 8'd0 && static_idle === 1'b1, "the blank after power-up");
     compared <= 1'b1;
@@ -438,10 +456,12 @@ module bench;
     traffic;
 `endif
     check(watched_in_swaps > 0 && compared_clocks > 0, "nothing was watched");
-    $display("neighbour: %0d clocks watched, %0d of them in swaps; region and RTL compared on %0d clocks", watched,
+    $display("neighbour: %0d clocks watched, %0d of them in swaps; region and RTL compared on %0d ",
+        "clocks", watched,
              watched_in_swaps, compared_clocks);
     if (failures != 0) $display("FAILED: %0d checks", failures);
-    $display("fabric swaps=%0d pairs=%0d differences=%0d static_wrong=%0d leaked=%0d", swaps, pairs, differences,
+    $display("fabric swaps=%0d pairs=%0d differences=%0d static_wrong=%0d leaked=%0d", swaps,
+        pairs, differences,
              static_wrong, leaked);
     $finish;
   end

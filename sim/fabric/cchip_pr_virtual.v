@@ -2,9 +2,12 @@
 `timescale 1ns / 1ps
 `default_nettype none
 `include "cchip_defs.vh"
-// cchip_pr_virtual: takes the place of sim/rtl_models/cchip_pr_virtual.v, with the same ports: what cchip_pr_slot holds
-// with SIMULATION = 1. Here it is a fabric whose latches are written by the words of the configuration port. The region
-// is the columns FABRIC_FIRST..FABRIC_COLUMNS - 1; the columns before them hold the neighbour, whose pins the bench
+// cchip_pr_virtual: takes the place of sim/rtl_models/cchip_pr_virtual.v, with the same ports: what
+// cchip_pr_slot holds
+// with SIMULATION = 1. Here it is a fabric whose latches are written by the words of the
+// configuration port. The region
+// is the columns FABRIC_FIRST..FABRIC_COLUMNS - 1; the columns before them hold the neighbour,
+// whose pins the bench
 // reads.
 module cchip_pr_virtual #(
     parameter integer SLOT_ID = 0,

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 `timescale 1ns / 1ps
-// Cells of the fabric for the simulation, lighter than the generated ones, with two properties that these lack:
-//   delay        of a LUT: 4 ns, or LUT_DELAY of fabric.py while frames are written; of a multiplexer of the wiring:
-//                1 ns. Half-written logic forms rings: one without delay never lets time pass, and one that oscillates
-//                often in a clock takes hours. The neighbour's path of two LUTs must fit in a clock. No timing of silicon
-//   settled      once the configuration is whole a flip-flop takes 0 or 1 at random where it would store X. Silicon has
+// Cells of the fabric for the simulation, lighter than the generated ones, with two properties that
+// these lack:
+//   delay        of a LUT: 4 ns, or LUT_DELAY of fabric.py while frames are written; of a
+//                multiplexer of the wiring:
+//                1 ns. Half-written logic forms rings: one without delay never lets time pass, and
+//                one that oscillates
+//                often in a clock takes hours. The neighbour's path of two LUTs must fit in a
+//                clock. No timing of silicon
+//   settled      once the configuration is whole a flip-flop takes 0 or 1 at random where it would
+//                store X. Silicon has
 //                no X; while frames are written X is kept, because it is what gets counted
 module fabric_state;
   reg settled = 1'b0;
