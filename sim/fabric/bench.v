@@ -70,8 +70,8 @@ module bench;
   wire [31:0] read_clocks;
   wire port_valid, stall;
   wire [31:0] port_data;
-  integer outstanding = 0;  // pairs between their first vertex and their answer,
-      as the static side counts
+  // pairs between their first vertex and their answer, as the static side counts
+  integer outstanding = 0;
   reg stop_q = 1'b0;
   always @(posedge clk) stop_q <= stop;
 
