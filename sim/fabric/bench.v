@@ -456,9 +456,8 @@ module bench;
     traffic;
 `endif
     check(watched_in_swaps > 0 && compared_clocks > 0, "nothing was watched");
-    $display("neighbour: %0d clocks watched, %0d of them in swaps; region and RTL compared on %0d ",
-        "clocks", watched,
-             watched_in_swaps, compared_clocks);
+    $display("neighbour: %0d clocks watched, %0d of them in swaps; compared with the RTL: %0d",
+             watched, watched_in_swaps, compared_clocks);
     if (failures != 0) $display("FAILED: %0d checks", failures);
     $display("fabric swaps=%0d pairs=%0d differences=%0d static_wrong=%0d leaked=%0d", swaps,
         pairs, differences,
