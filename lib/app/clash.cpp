@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cchip/assembly_motion.hpp>
+#include <cchip/assembly_receipts.hpp>
 #include <cchip/internal/geometry/decimal.hpp>
 #include <cchip/program/csv_reader.hpp>
 #include <cchip/program/output_file.hpp>
@@ -207,6 +208,60 @@ MotionReport judge_motion(const Assembly& assembly, const ClashOptions& options)
   }
 }
 
+void prove(const Assembly& assembly, const AssemblyReport& report, const ClashOptions& options) {
+  ReceiptOptions receipts;
+  receipts.threads = options.threads;
+  try {
+    write_receipts(assembly, report, options.receipts, receipts);
+  } catch (const std::runtime_error& error) {
+    throw UsageError(error.what());
+  }
+}
+
+std::string json_text(const Assembly& assembly, const ReceiptReport& report) {
+  Json pairs = Json::array();
+  for (const CheckedReceipt& pair : report.pairs) {
+    pairs.push_back({{"a", assembly.parts[pair.a].name},
+                     {"b", assembly.parts[pair.b].name},
+                     {"state", name_of(pair.state)},
+                     {"text", pair.text}});
+  }
+  const Json object = {{"by_boxes", report.by_boxes}, {"pairs", pairs}};
+  return object.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+int run_verify(const Assembly& assembly, const ClashOptions& options, const Streams& streams) {
+  const bool json_out = options.json == "-";
+  ReceiptReport report;
+  try {
+    report = verify_receipts(assembly, options.verify, options.threads);
+  } catch (const std::runtime_error& error) {
+    throw UsageError(error.what());
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(options.assembly + ": " + error.what());
+  }
+  if (json_out) {
+    streams.out << json_text(assembly, report);
+  } else {
+    for (const CheckedReceipt& pair : report.pairs) {
+      if (pair.state != ReceiptState::proved) streams.out << name_of(pair.state) << ": " << pair.text << '\n';
+    }
+    streams.out << left_out_line(assembly);
+    if (!options.json.empty()) write_file(options.json, json_text(assembly, report));
+  }
+  std::string counts = fmt::format("pairs={} by_boxes={}", report.pairs.size() + report.by_boxes, report.by_boxes);
+  bool fails = false;
+  for (const ReceiptState state : {ReceiptState::proved, ReceiptState::violation, ReceiptState::unproved,
+                                   ReceiptState::missing, ReceiptState::stale, ReceiptState::refused}) {
+    const std::size_t count = report.count(state);
+    counts += fmt::format(" {}={}", name_of(state), count);
+    fails = fails || (count > 0 && state != ReceiptState::proved && state != ReceiptState::unproved);
+  }
+  (json_out ? streams.err : streams.out) << counts << '\n';
+  if (fails) return exit_violation;
+  return report.count(ReceiptState::unproved) > 0 || assembly.faces_left_out > 0 ? exit_left_out : exit_ok;
+}
+
 int run_motion(const Assembly& assembly, const ClashOptions& options, const Streams& streams) {
   const bool json_out = options.json == "-";
   const MotionReport report = judge_motion(assembly, options);
@@ -259,6 +314,7 @@ int run_clash(const ClashOptions& options, const Streams& streams) {
   const Assembly assembly = read_assembly(options);
   for (const std::string& note : assembly.notes) streams.err << "cchip: " << note << '\n';
   if (!options.path.empty()) return run_motion(assembly, options, streams);
+  if (!options.verify.empty()) return run_verify(assembly, options, streams);
   const AssemblyReport report = judge(assembly, options);
   for (const std::string& note : report.notes) streams.err << "cchip: " << note << '\n';
   if (json_out) {
@@ -269,6 +325,7 @@ int run_clash(const ClashOptions& options, const Streams& streams) {
   }
   if (!options.junit.empty()) write_file(options.junit, junit_text(assembly, report, options.assembly));
   if (!options.accept.empty()) write_file(options.accept, accepting_rules(assembly, report));
+  if (!options.receipts.empty()) prove(assembly, report, options);
   (json_out ? streams.err : streams.out) << summary(assembly, report) << '\n';
   if (report.violations > 0) return exit_violation;
   return report.not_judged > 0 || assembly.faces_left_out > 0 ? exit_left_out : exit_ok;

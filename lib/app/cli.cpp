@@ -203,6 +203,15 @@ Run add_clash(CLI::App& app) {
            "time between looks below which a motion is called unproved (default 1e-4 of a row)")
       ->needs(path);
   accept->excludes(path);
+  add_text(*command, "--receipts", options.receipts,
+           "folder that gets a proof of each verdict, for --verify and cchip check")
+      ->excludes(path);
+  add_text(*command, "--verify", options.verify,
+           "folder of receipts: check these, without judging, against the assembly as it is now")
+      ->excludes(path)
+      ->excludes(accept)
+      ->excludes("--receipts")
+      ->excludes("--junit");
   command->add_flag("--neighbours", options.neighbours, "look at links that a joint joins, too");
   add_whole(*command, "--threads", options.threads, "threads (default 0: as many as there are cores)",
             WholeRange{0, 4096});
@@ -217,7 +226,8 @@ Run add_clash(CLI::App& app) {
       "  cchip clash robot.urdf --joints shoulder=1.57,elbow=-0.5\n"
       "  cchip clash robot.urdf --path path.csv --clearance 0.01\n"
       "  cchip clash parts/ --unit mm --accept accepted.toml\n"
-      "  cchip clash parts/ --unit mm --rules accepted.toml");
+      "  cchip clash parts/ --unit mm --rules accepted.toml\n"
+      "  cchip clash assembly.toml --receipts proofs && cchip clash assembly.toml --verify proofs");
   return [held](const Streams& streams) { return run_clash(*held, streams); };
 }
 

@@ -12,8 +12,8 @@ usage: fabric.py [--set small|point] [--seed N] [--without-decoupler | --without
 --without-decoupler, --without-roc   leave this part out, to see that its absence is found: the run must then fail
 
 Needs Python 3.12 or newer for FABulous (installed from PyPI below build/fabric), and Debian's yosys, nextpnr-generic
-and iverilog. Last line: fabric swaps=N pairs=N differences=0 static_wrong=0 leaked=0. Exit codes: 0 right, 1 wrong, 2 bad
-arguments or no tool."""
+and iverilog. Last line: fabric swaps=N pairs=N differences=0 static_wrong=0 leaked=0. Exit codes: 0 right, 1 wrong,
+2 bad arguments or no tool."""
 import argparse
 import dataclasses
 import os

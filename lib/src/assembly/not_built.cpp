@@ -1,9 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // Readers that this build of the library does not have.
+#include <cchip/assembly_receipts.hpp>
 #include <stdexcept>
 
 #include "placed_meshes.hpp"
 #include "robot.hpp"
+
+#ifndef CCHIP_WITH_GLTF
+namespace cchip {
+
+constexpr const char* no_receipts =
+    "receipts: this build of the library has none; build it with nlohmann-json (Debian's nlohmann-json3-dev)";
+void write_receipts(const Assembly&, const AssemblyReport&, const std::string&, const ReceiptOptions&) {
+  throw std::runtime_error(no_receipts);
+}
+ReceiptReport verify_receipts(const Assembly&, const std::string&, unsigned) { throw std::runtime_error(no_receipts); }
+
+}  // namespace cchip
+#endif
 
 namespace cchip::assembly {
 

@@ -7,13 +7,13 @@
 #include <cchip/solids.hpp>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "parting_way.hpp"
+#include "solid_rays.hpp"
 
 namespace cchip::assembly {
 namespace {
@@ -91,31 +91,6 @@ void judge_solids(const AssemblyPart& a, const AssemblyPart& b, AssemblyPair& pa
   pair.note += "judged with all that their faces wind around as inside";
 }
 
-/// A vertex of each piece of a mesh that hangs together by vertices.
-std::vector<Vec3d> vertex_of_each_piece(const Object& object) {
-  const std::vector<std::uint32_t>& place = object.same_place();
-  std::vector<std::uint32_t> parent(place.size());
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root = [&parent](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  const Mesh& mesh = object.mesh();
-  for (const Mesh::Face& face : mesh.faces) {
-    for (std::size_t i = 1; i < (face.kind == Kind::quad ? 4U : 3U); ++i) {
-      parent[root(place[face.vertex[i]])] = root(place[face.vertex[0]]);
-    }
-  }
-  std::vector<Vec3d> found;
-  std::vector<bool> seen(place.size(), false);
-  for (const Mesh::Face& face : mesh.faces) {
-    const std::uint32_t piece = root(place[face.vertex[0]]);
-    if (!seen[piece]) found.push_back(mesh.vertices[face.vertex[0]]);
-    seen[piece] = true;
-  }
-  return found;
-}
-
 Mesh cube_around(const Vec3d& centre, double half) {
   Mesh cube;
   for (unsigned i = 0; i < 8; ++i) {
@@ -138,9 +113,9 @@ enum class Side { outside, inside, both, unknown };
 Side side_of(const AssemblyPart& surface, const AssemblyPart& solid) {
   const double gap = distance(surface.object, surface.pose, solid.object, solid.pose).lower;
   std::size_t inside = 0;
-  const std::vector<Vec3d> vertices = vertex_of_each_piece(surface.object);
-  for (const Vec3d& vertex : vertices) {
-    const Vec3d at = surface.pose * vertex;
+  const std::vector<std::uint32_t> vertices = vertex_of_each_piece(surface.object.mesh());
+  for (const std::uint32_t vertex : vertices) {
+    const Vec3d at = surface.pose * surface.object.mesh().vertices[vertex];
     const double half = gap / 8;
     // The vertex is rounded, and so are the corners of the cube.
     if (!(half > 0x1p-40 * at.cwiseAbs().maxCoeff()) || !std::isfinite(half)) return Side::unknown;

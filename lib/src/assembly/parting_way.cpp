@@ -27,7 +27,8 @@ Key key_of(const Vec3d& normal) {
   return key;
 }
 
-/// Normals of the faces in contact, those of most contacts first.
+}  // namespace
+
 std::vector<Vec3d> normals_of_contacts(const AssemblyPart& a, const AssemblyPart& b) {
   CollisionRequest request;
   request.contacts = CollisionRequest::Contacts::all;
@@ -60,6 +61,8 @@ std::vector<Vec3d> normals_of_contacts(const AssemblyPart& a, const AssemblyPart
   for (const Found& one : sorted) normals.push_back(one.normal);
   return normals;
 }
+
+namespace {
 
 /// Do the parts share no volume, or, if one is open, do their surfaces not cross?
 bool are_parted(const AssemblyPart& a, const AssemblyPart& b, const Pose& pose_b) {

@@ -7,6 +7,7 @@
 #include <cchip/assembly.hpp>
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 namespace cchip::assembly {
 
@@ -16,6 +17,9 @@ namespace cchip::assembly {
 /// \param most_normals how many are tried, those of most contacts first
 std::optional<PartingWay> parting_way(const AssemblyPart& a, const AssemblyPart& b, double enough,
                                       std::size_t most_normals);
+
+/// Normals of the faces in contact, of unit length, each direction and its opposite once; those of most contacts first.
+std::vector<Vec3d> normals_of_contacts(const AssemblyPart& a, const AssemblyPart& b);
 
 }  // namespace cchip::assembly
 
