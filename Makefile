@@ -104,8 +104,9 @@ TESTS ?= test_collide test_solids
 test-lib: ## the C++ library, its command and some of its tests, without Verilator and SystemC; TESTS="test_distance ..." for others
 	@$(BOOTSTRAP)
 	cmake --preset library
-	cmake --build build/library -j $(JOBS) --target cchip $(TESTS)
+	cmake --build build/library -j $(JOBS) --target $(TESTS)
 	for test in $(TESTS); do build/library/bin/$$test || exit 1; done
+	cmake --build build/library -j $(JOBS) --target cchip
 
 test-long: build ## run the regression and the long tests
 	cmake --build $(RELEASE) -j $(JOBS) --target long_programs

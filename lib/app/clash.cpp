@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <cchip/assembly_motion.hpp>
 #include <cchip/assembly_receipts.hpp>
+#include <cchip/cpu_device.hpp>
+#include <cchip/html_page.hpp>
 #include <cchip/internal/geometry/decimal.hpp>
+#include <cchip/intersection.hpp>
 #include <cchip/program/csv_reader.hpp>
 #include <cchip/program/output_file.hpp>
 #include <cchip/program/usage_error.hpp>
@@ -19,6 +22,7 @@
 #include <string_view>
 #include <vector>
 
+#include "html_view.hpp"
 #include "motion.hpp"
 
 namespace cchip::app {
@@ -208,6 +212,59 @@ MotionReport judge_motion(const Assembly& assembly, const ClashOptions& options)
   }
 }
 
+std::string kind_of(const AssemblyPair& pair) {
+  return pair.is_violation ? "violation" : pair.is_judged ? "accepted" : "not judged";
+}
+
+/// Contacts and curves of two parts, those of the first contacts if there are many.
+void add_contacts(const AssemblyPart& a, const AssemblyPart& b, PagePair& page) {
+  constexpr std::size_t most = 2000;
+  CollisionRequest request;
+  request.contacts = CollisionRequest::Contacts::all;
+  request.relation = true;
+  request.max_contacts = most;
+  const CollisionResult result = collide(a.object, a.pose, b.object, b.pose, request);
+  for (const Contact& contact : result.contacts)
+    page.contacts.push_back({contact.face_a, contact.face_b, contact.relation});
+  const CollisionQuery query = {&a.object, &a.pose, &b.object, &b.pose};
+  for (const IntersectionCurve& curve : intersection_curves(query, result.contacts)) {
+    page.curves.push_back({curve.points, curve.closed});
+  }
+}
+
+/// Violations come first. A page of more pairs than a person looks at shows the first ones.
+std::string html_text(const Assembly& assembly, const AssemblyReport& report, const std::string& path) {
+  constexpr std::size_t most = 500;
+  std::vector<const AssemblyPair*> order;
+  for (const AssemblyPair& pair : report.pairs) order.push_back(&pair);
+  std::stable_sort(order.begin(), order.end(), [](const AssemblyPair* x, const AssemblyPair* y) {
+    return std::pair(!x->is_violation, x->is_judged) < std::pair(!y->is_violation, y->is_judged);
+  });
+  std::string text = size_text(assembly, report) + "; " + summary(assembly, report);
+  if (order.size() > most) {
+    text += fmt::format("; the first {} of {} pairs are shown, --json has all", most, order.size());
+    order.resize(most);
+  }
+  std::vector<Mesh> parts(assembly.parts.size());
+  std::vector<PagePair> pairs;
+  for (const AssemblyPair* pair : order) {
+    for (const std::size_t i : {pair->a, pair->b}) {
+      if (!parts[i].faces.empty()) continue;
+      parts[i] = transformed(assembly.parts[i].object.mesh(), assembly.parts[i].pose);
+      parts[i].name = assembly.parts[i].name;
+    }
+    PagePair page = {pair->a, pair->b, kind_of(*pair), sentence(assembly, *pair)};
+    add_contacts(assembly.parts[pair->a], assembly.parts[pair->b], page);
+    if (pair->verdict == PairVerdict::too_near) page.curves.push_back({{pair->nearest[0], pair->nearest[1]}});
+    pairs.push_back(std::move(page));
+  }
+  try {
+    return pairs_page(parts, std::filesystem::path(path).filename().string(), text, pairs, read_page_scripts());
+  } catch (const std::runtime_error& error) {
+    throw UsageError(std::string("--html: ") + error.what());
+  }
+}
+
 void prove(const Assembly& assembly, const AssemblyReport& report, const ClashOptions& options) {
   ReceiptOptions receipts;
   receipts.threads = options.threads;
@@ -307,8 +364,13 @@ int run_clash(const ClashOptions& options, const Streams& streams) {
   const bool json_out = options.json == "-";
   sim::check_outputs(
       {{"ASSEMBLY", options.assembly}, {"--rules", options.rules}, {"--srdf", options.srdf}, {"--path", options.path}},
-      {{"--json", json_out ? "" : options.json}, {"--junit", options.junit}, {"--accept", options.accept}});
-  for (const std::string& path : {json_out ? std::string() : options.json, options.junit, options.accept}) {
+      {{"--json", json_out ? "" : options.json},
+       {"--junit", options.junit},
+       {"--html", options.html},
+       {"--accept", options.accept}});
+  if (!options.html.empty()) check_view_name(options.html);
+  for (const std::string& path :
+       {json_out ? std::string() : options.json, options.junit, options.html, options.accept}) {
     if (!path.empty()) sim::check_writable(path);
   }
   const Assembly assembly = read_assembly(options);
@@ -324,6 +386,7 @@ int run_clash(const ClashOptions& options, const Streams& streams) {
     if (!options.json.empty()) write_file(options.json, json_text(assembly, report));
   }
   if (!options.junit.empty()) write_file(options.junit, junit_text(assembly, report, options.assembly));
+  if (!options.html.empty()) write_file(options.html, html_text(assembly, report, options.assembly));
   if (!options.accept.empty()) write_file(options.accept, accepting_rules(assembly, report));
   if (!options.receipts.empty()) prove(assembly, report, options);
   (json_out ? streams.err : streams.out) << summary(assembly, report) << '\n';

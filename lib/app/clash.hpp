@@ -24,6 +24,7 @@ struct ClashOptions {
   bool neighbours = false;  ///< as AssemblyLoadOptions::neighbours
   std::string path;         ///< CSV file of configurations; empty: none
   std::string least_step;   ///< as MotionOptions::least_step; empty: its default
+  std::string html;         ///< a page with a view of each pair; empty: none
   std::string receipts;     ///< folder for receipts; empty: none
   std::string verify;       ///< folder of receipts to check in place of judging; empty: none
   unsigned threads = 0;     ///< 0: as many as there are cores

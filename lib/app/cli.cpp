@@ -185,6 +185,8 @@ Run add_clash(CLI::App& app) {
   add_text(*command, "--rules", options.rules, "TOML file with more rules, which come last");
   add_text(*command, "--json", options.json, "write the report; - writes it to standard output in place of the table");
   add_text(*command, "--junit", options.junit, "write the report as JUnit XML, a test case for each pair that meets");
+  CLI::Option* html =
+      add_text(*command, "--html", options.html, "write a page for browsers with a view of each pair that meets");
   CLI::Option* accept = add_text(*command, "--accept", options.accept,
                                  "write rules that accept what parts do now, for --rules or the key rules of ASSEMBLY");
   add_text(*command, "--unit", options.unit, "um, mm, cm, m, in or ft: that of the assembly's numbers");
@@ -203,6 +205,7 @@ Run add_clash(CLI::App& app) {
            "time between looks below which a motion is called unproved (default 1e-4 of a row)")
       ->needs(path);
   accept->excludes(path);
+  html->excludes(path);
   add_text(*command, "--receipts", options.receipts,
            "folder that gets a proof of each verdict, for --verify and cchip check")
       ->excludes(path);
@@ -211,7 +214,8 @@ Run add_clash(CLI::App& app) {
       ->excludes(path)
       ->excludes(accept)
       ->excludes("--receipts")
-      ->excludes("--junit");
+      ->excludes("--junit")
+      ->excludes(html);
   command->add_flag("--neighbours", options.neighbours, "look at links that a joint joins, too");
   add_whole(*command, "--threads", options.threads, "threads (default 0: as many as there are cores)",
             WholeRange{0, 4096});
@@ -222,7 +226,7 @@ Run add_clash(CLI::App& app) {
       "2 wrong input or command line, 4 no violation, but faces left out, or a pair not judged or unproved.\n"
       "Examples:\n"
       "  cchip clash assembly.toml\n"
-      "  cchip clash assembly.toml --junit clash.xml\n"
+      "  cchip clash assembly.toml --junit clash.xml --html clash.html\n"
       "  cchip clash robot.urdf --joints shoulder=1.57,elbow=-0.5\n"
       "  cchip clash robot.urdf --path path.csv --clearance 0.01\n"
       "  cchip clash parts/ --unit mm --accept accepted.toml\n"

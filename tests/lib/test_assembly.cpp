@@ -3,6 +3,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cchip/assembly.hpp>
+#include <cchip/html_page.hpp>
 #include <cchip/program/seed.hpp>
 #include <cmath>
 #include <cstdint>
@@ -318,6 +319,31 @@ TEST_CASE("assembly: sizes and units that look wrong are named", "[assembly]") {
   CHECK(report.size == std::array<double, 3>{1005, 2, 3});
   REQUIRE(report.notes.size() == 1);
   CHECK(report.notes[0].find("check the units") != std::string::npos);
+}
+
+TEST_CASE("assembly: a page of pairs has each shown part once", "[assembly]") {
+  std::vector<Mesh> parts = {make_box({0, 0, 0}, {1, 1, 1}), make_box({1, 0, 0}, {2, 1, 1}),
+                             make_box({9, 0, 0}, {10, 1, 1})};
+  parts[0].name = "plate</script>";
+  parts[1].name = "bolt \"1\"";
+  parts[2].name = "far";
+  const std::vector<PagePair> pairs = {{1, 0, "violation", "they & touch", {{0, 1, Relation::touching}}, {}},
+                                       {0, 1, "accepted", "again", {}, {{{{0, 0, 0}, {1, 0, 0}}, false}}}};
+  const std::string page = pairs_page(parts, "x<y", "a summary", pairs, {"/*the library*/", "controls"});
+  const auto count = [&page](const std::string& what) {
+    std::size_t found = 0;
+    for (std::size_t at = page.find(what); at != std::string::npos; at = page.find(what, at + 1)) ++found;
+    return found;
+  };
+  CHECK(count("plate\\u003c/script>") == 1);
+  CHECK(count("bolt \\u00221\\u0022") == 1);
+  CHECK(count("\"name\":\"far\"") == 0);
+  CHECK(count("<title>x&lt;y</title>") == 1);
+  CHECK(count("\"kind\":\"violation\"") == 1);
+  CHECK(count("\"contacts\":[[0,1,1]],\"curves\":[]") == 1);
+  CHECK(count("</script>") == 1);  // its own; those of the pair's page are in a text
+  CHECK(count("/*the library*/") == 1);
+  CHECK(count("@VIEWER@") == 0);
 }
 
 TEST_CASE("assembly: parts that are made by hand are checked", "[assembly]") {

@@ -73,8 +73,8 @@ class Judge {
   }
 
   bool holds(const Certificate& c) {
-    if (c.version != (c.within > 0 || c.along ? 2 : 1) || c.hash_a != hash_mesh(side_[0].mesh) || c.hash_b != hash_mesh(side_[1].mesh) ||
-        c.hash_poses != hash_poses(side_[0].pose, side_[1].pose)) {
+    if (c.version != (c.within > 0 || c.along ? 2 : 1) || c.hash_a != hash_mesh(side_[0].mesh) ||
+        c.hash_b != hash_mesh(side_[1].mesh) || c.hash_poses != hash_poses(side_[0].pose, side_[1].pose)) {
       return false;
     }
     return proof_holds(c) && claim_holds(c);
@@ -266,8 +266,8 @@ class Judge {
           continue;
         }
         if (gap < 0 || (strictly && gap == 0)) return false;
-        const cpp_rational far = cpp_rational(c.within) * cpp_rational(c.within) *
-                                 cpp_rational(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        const cpp_rational far =
+            cpp_rational(c.within) * cpp_rational(c.within) * cpp_rational(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
         if (c.within > 0 && (c.below ? gap * gap < far : gap * gap <= far)) return false;
       }
     }
@@ -923,7 +923,8 @@ TEST_CASE("certificate: that a translation clears a mesh is certified and accept
   const CollisionQuery query = {&box, &boxes[0].pose, &box, &boxes[1].pose};
   CHECK(certify_clear_along(query, Vec3d(1, 0, 0))->cells.size() == 1);
   CHECK_FALSE(certify_clear_along(query, Vec3d(0, 1, 0)));
-  CHECK_THROWS_WITH(certify_clear_along(query, Vec3d::Zero()), Catch::StartsWith("certify_clear_along: the translation"));
+  CHECK_THROWS_WITH(certify_clear_along(query, Vec3d::Zero()),
+                    Catch::StartsWith("certify_clear_along: the translation"));
 }
 
 TEST_CASE("certificate: a file keeps it, and a damaged one is refused or still true", "[lib][certificate]") {

@@ -74,9 +74,10 @@ struct Certificate {
   bool all = true;
   /// The least relation that makes a contact: touching or crossing.
   Relation least = Relation::touching;
-  /// Above 0: faces at most this far apart are contacts, in units of the world; `least` and relations tell nothing then.
+  /// Above 0: faces at most this far apart are contacts, in units of the world; `least` and relations tell nothing
+  /// then.
   double within = 0;
-  bool below = false;                ///< with `within`: only those nearer than that are contacts
+  bool below = false;  ///< with `within`: only those nearer than that are contacts
   /// There is no contact after any translation of B by a positive multiple of this, in the world. With `all` and
   /// without contacts; nothing is said of the poses themselves, where the meshes may touch.
   std::optional<Vec3d> along;

@@ -6,6 +6,7 @@
 
 #include <cchip/mesh.hpp>
 #include <cchip/relation.hpp>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -44,6 +45,23 @@ struct PageCurve {
 /// \param curves drawn over the faces; a point that is not finite interrupts them
 std::string html_page(const Mesh& a, const Mesh& b, const std::string& answer, const std::vector<PageContact>& contacts,
                       const PageScripts& scripts, const std::vector<PageCurve>& curves = {});
+
+/// Two parts in a page of pairs.
+struct PagePair {
+  std::size_t a = 0;  ///< numbers of parts
+  std::size_t b = 0;
+  std::string kind;  ///< a word, by which rows can be hidden, such as "violation"
+  std::string text;  ///< UTF-8
+  std::vector<PageContact> contacts = {};
+  std::vector<PageCurve> curves = {};
+};
+
+/// An HTML page with a list of pairs, the chosen one of which is shown as html_page() shows it. It needs nothing beside
+/// it.
+/// \param parts in their places, in any length unit; those that no pair names are not written
+/// \param title, summary UTF-8
+std::string pairs_page(const std::vector<Mesh>& parts, const std::string& title, const std::string& summary,
+                       const std::vector<PagePair>& pairs, const PageScripts& scripts);
 
 }  // namespace cchip
 

@@ -103,7 +103,8 @@ std::vector<Receipt> read_receipt_index(const std::string& folder) {
     const nlohmann::json json = nlohmann::json::parse(file);
     const JsonTable table(path, json, "");
     if (table.whole(version_key, 0) != 1) {
-      table.refuse(std::string("'") + version_key + "' is not 1; give a folder that --receipts of this version has written");
+      table.refuse(std::string("'") + version_key +
+                   "' is not 1; give a folder that --receipts of this version has written");
     }
     std::vector<Receipt> receipts;
     for (const JsonTable& entry : table.tables("receipts", "receipt")) {

@@ -208,8 +208,8 @@ const char* name_of(ReceiptState state) {
 }
 
 std::size_t ReceiptReport::count(ReceiptState state) const {
-  return static_cast<std::size_t>(std::count_if(pairs.begin(), pairs.end(),
-                                                [state](const CheckedReceipt& pair) { return pair.state == state; }));
+  return static_cast<std::size_t>(
+      std::count_if(pairs.begin(), pairs.end(), [state](const CheckedReceipt& pair) { return pair.state == state; }));
 }
 
 ReceiptReport verify_receipts(const Assembly& assembly, const std::string& folder, unsigned threads) {

@@ -86,7 +86,10 @@ std::optional<Vec3d> find_common_point(const AssemblyPart& a, const AssemblyPart
 class Prover {
  public:
   Prover(const Assembly& assembly, const RuleBook& rules, std::size_t a, std::size_t b, std::size_t most_normals)
-      : a_(assembly.parts[a]), b_(assembly.parts[b]), clearance_(rules.clearance_of(a, b)), most_(most_normals),
+      : a_(assembly.parts[a]),
+        b_(assembly.parts[b]),
+        clearance_(rules.clearance_of(a, b)),
+        most_(most_normals),
         receipt(assembly::receipt_of(a_, b_)) {
     if (const auto number = rules.rule_of(a, b)) rule_ = &assembly.rules[*number];
   }
@@ -185,9 +188,8 @@ void write_receipts(const Assembly& assembly, const AssemblyReport& report, cons
     AssemblyPair pair;
     std::tie(pair.a, pair.b) = to_prove.pairs[i];
     const auto found =
-        std::lower_bound(report.pairs.begin(), report.pairs.end(), pair, [](const auto& x, const auto& y) {
-          return std::pair(x.a, x.b) < std::pair(y.a, y.b);
-        });
+        std::lower_bound(report.pairs.begin(), report.pairs.end(), pair,
+                         [](const auto& x, const auto& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
     if (found != report.pairs.end() && found->a == pair.a && found->b == pair.b) pair = *found;
     Prover prover(assembly, rules, pair.a, pair.b, options.most_normals);
     prover.prove(pair);

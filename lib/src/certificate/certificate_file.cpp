@@ -14,8 +14,7 @@ namespace cchip {
 namespace {
 
 using CellKind = CertificateCell::Kind;
-constexpr std::array<const char*, 7> kind_names = {"split_a", "split_b", "separated", "meet",
-                                                   "touch",   "cross",   "near"};
+constexpr std::array<const char*, 7> kind_names = {"split_a", "split_b", "separated", "meet", "touch", "cross", "near"};
 constexpr std::array<const char*, 3> relation_names = {"apart", "touching", "crossing"};
 
 std::string hash_text(std::uint64_t hash) {

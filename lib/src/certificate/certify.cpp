@@ -227,9 +227,8 @@ class Maker {
   }
   CertificateCell pair(std::uint32_t face_a, std::uint32_t face_b) const {
     const std::array<std::vector<Point>, 2> points = points_of(face_a, face_b);
-    CertificateCell cell = request_.within > 0
-                               ? prove_distance(points[0], points[1], checker_.within, checker_.below)
-                               : prove_pair(points[0], points[1], request_.tells_relation());
+    CertificateCell cell = request_.within > 0 ? prove_distance(points[0], points[1], checker_.within, checker_.below)
+                                               : prove_pair(points[0], points[1], request_.tells_relation());
     cell.face_a = face_a;
     cell.face_b = face_b;
     return cell;
@@ -403,7 +402,8 @@ Certificate certify_below(const CollisionQuery& query, double distance, Collisio
   CollisionRequest request;
   request.contacts = contacts;
   request.within = distance;
-  if (!(distance > 0)) throw std::invalid_argument("certify_below: the distance is " + decimal_text(distance) + ": ask for one above 0");
+  if (!(distance > 0))
+    throw std::invalid_argument("certify_below: the distance is " + decimal_text(distance) + ": ask for one above 0");
   check_request(query, request);
   return Maker(query, request, true).search();
 }

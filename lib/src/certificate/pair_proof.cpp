@@ -390,7 +390,8 @@ std::optional<CertificateCell> prove_clear(const std::vector<Point>& points_a, c
   return cell;
 }
 
-CertificateCell prove_distance(const std::vector<Point>& a, const std::vector<Point>& b, const Int& within, bool below) {
+CertificateCell prove_distance(const std::vector<Point>& a, const std::vector<Point>& b, const Int& within,
+                               bool below) {
   using CellKind = CertificateCell::Kind;
   CertificateCell cell;
   cell.kind = CellKind::near;

@@ -132,10 +132,10 @@ void write_mesh(const Mesh& mesh, const Vec3d& centre, std::ostream& out) {
   out << '}';
 }
 
-/// Middle of the box around the faces of both.
-Vec3d centre_of(const Mesh& a, const Mesh& b) {
+/// Middle of the box around the faces of all.
+Vec3d centre_of(const std::vector<const Mesh*>& meshes) {
   Eigen::AlignedBox3d box;
-  for (const Mesh* mesh : {&a, &b}) {
+  for (const Mesh* mesh : meshes) {
     for (const Mesh::Face& face : mesh->faces) {
       for (std::size_t k = 0; k < corners(face); ++k) box.extend(mesh->vertices[face.vertex[k]]);
     }
@@ -160,14 +160,7 @@ void write_segments(const std::vector<PageCurve>& curves, const Vec3d& centre, s
   list.end();
 }
 
-void write_data(const Mesh& a, const Mesh& b, const std::string& answer, const std::vector<PageContact>& contacts,
-                const std::vector<PageCurve>& curves, std::ostream& out) {
-  const Vec3d centre = centre_of(a, b);
-  out << "{\"answer\":" << quoted(answer) << ",\"meshes\":[";
-  write_mesh(a, centre, out);
-  out << ',';
-  write_mesh(b, centre, out);
-  out << "],\"contacts\":";
+void write_contacts(const std::vector<PageContact>& contacts, std::ostream& out) {
   List list(out);
   for (const PageContact& contact : contacts) {
     const int relation = !contact.relation ? 0 : *contact.relation == Relation::crossing ? 2 : 1;
@@ -178,9 +171,93 @@ void write_data(const Mesh& a, const Mesh& b, const std::string& answer, const s
     row.end();
   }
   list.end();
+}
+
+void write_data(const Mesh& a, const Mesh& b, const std::string& answer, const std::vector<PageContact>& contacts,
+                const std::vector<PageCurve>& curves, std::ostream& out) {
+  const Vec3d centre = centre_of({&a, &b});
+  out << "{\"answer\":" << quoted(answer) << ",\"meshes\":[";
+  write_mesh(a, centre, out);
+  out << ',';
+  write_mesh(b, centre, out);
+  out << "],\"contacts\":";
+  write_contacts(contacts, out);
   out << ",\"curves\":";
   write_segments(curves, centre, out);
   out << '}';
+}
+
+void write_data(const std::vector<Mesh>& parts, const std::string& summary, const std::vector<PagePair>& pairs,
+                std::ostream& out) {
+  std::map<std::size_t, std::size_t> place;  // in the page
+  std::vector<const Mesh*> shown;
+  for (const PagePair& pair : pairs) {
+    for (const std::size_t part : {pair.a, pair.b}) {
+      if (place.emplace(part, shown.size()).second) shown.push_back(&parts[part]);
+    }
+  }
+  const Vec3d centre = centre_of(shown);
+  out << "{\"summary\":" << quoted(summary) << ",\"parts\":[";
+  const char* comma = "";
+  for (const Mesh* mesh : shown) {
+    out << comma;
+    write_mesh(*mesh, centre, out);
+    comma = ",\n";
+  }
+  out << "],\"pairs\":[";
+  comma = "";
+  for (const PagePair& pair : pairs) {
+    out << comma << "{\"a\":" << place[pair.a] << ",\"b\":" << place[pair.b] << ",\"kind\":" << quoted(pair.kind)
+        << ",\"text\":" << quoted(pair.text) << ",\"contacts\":";
+    write_contacts(pair.contacts, out);
+    out << ",\"curves\":";
+    write_segments(pair.curves, centre, out);
+    out << '}';
+    comma = ",\n";
+  }
+  out << "]}";
+}
+
+/// Puts parts in place of @NAME@; another @ is a letter.
+template <class Write>
+void fill(std::string_view page, std::ostream& out, const Write& write) {
+  while (!page.empty()) {
+    const std::size_t mark = page.find('@');
+    out << page.substr(0, mark);
+    page.remove_prefix(std::min(mark, page.size()));
+    const std::size_t end = page.find('@', 1);
+    const std::string_view name = end == std::string_view::npos ? "" : page.substr(0, end + 1);
+    if (!name.empty() && write(name)) {
+      page.remove_prefix(name.size());
+    } else {
+      out << page.substr(0, 1);
+      page.remove_prefix(std::min<std::size_t>(1, page.size()));
+    }
+  }
+}
+
+std::ostringstream page_stream() {
+  std::ostringstream out;
+  out.imbue(std::locale::classic());
+  out.precision(9);
+  return out;
+}
+
+/// The viewer's scripts in their places. \param rest writes what belongs in the other places
+template <class Write>
+std::string viewer_with(const PageScripts& scripts, const Write& rest) {
+  std::ostringstream out = page_stream();
+  fill(mesh_io::viewer_page, out, [&](std::string_view name) {
+    if (name == "@THREE@") {
+      out << scripts.three;
+    } else if (name == "@CONTROLS@") {
+      out << scripts.controls;
+    } else {
+      return rest(name, out);
+    }
+    return true;
+  });
+  return out.str();
 }
 
 }  // namespace
@@ -193,32 +270,33 @@ PageScripts read_page_scripts(const std::string& folder) {
 
 std::string html_page(const Mesh& a, const Mesh& b, const std::string& answer, const std::vector<PageContact>& contacts,
                       const PageScripts& scripts, const std::vector<PageCurve>& curves) {
-  std::ostringstream out;
-  out.imbue(std::locale::classic());
-  out.precision(9);
-  std::string_view rest = mesh_io::viewer_page;
-  while (!rest.empty()) {
-    // @NAME@ stands for a part; another @ is a letter
-    const std::size_t mark = rest.find('@');
-    out << rest.substr(0, mark);
-    rest.remove_prefix(std::min(mark, rest.size()));
-    const std::size_t end = rest.find('@', 1);
-    const std::string_view name = end == std::string_view::npos ? "" : rest.substr(0, end + 1);
+  return viewer_with(scripts, [&](std::string_view name, std::ostream& out) {
     if (name == "@TITLE@") {
       out << escaped(answer);
-    } else if (name == "@THREE@") {
-      out << scripts.three;
-    } else if (name == "@CONTROLS@") {
-      out << scripts.controls;
     } else if (name == "@DATA@") {
       write_data(a, b, answer, contacts, curves, out);
     } else {
-      out << rest.substr(0, 1);
-      rest.remove_prefix(std::min<std::size_t>(1, rest.size()));
-      continue;
+      return false;
     }
-    rest.remove_prefix(name.size());
-  }
+    return true;
+  });
+}
+
+std::string pairs_page(const std::vector<Mesh>& parts, const std::string& title, const std::string& summary,
+                       const std::vector<PagePair>& pairs, const PageScripts& scripts) {
+  std::ostringstream out = page_stream();
+  fill(mesh_io::pairs_page, out, [&](std::string_view name) {
+    if (name == "@TITLE@") {
+      out << escaped(title);
+    } else if (name == "@DATA@") {
+      write_data(parts, summary, pairs, out);
+    } else if (name == "@VIEWER@") {
+      out << quoted(viewer_with(scripts, [](std::string_view, std::ostream&) { return false; }));
+    } else {
+      return false;
+    }
+    return true;
+  });
   return out.str();
 }
 
