@@ -118,7 +118,7 @@ def reach(c):
     if "within" not in c and "below" not in c:
         return Fraction(0), False
     value = c["below"] if "below" in c else c["within"]
-    require(type(value) in (int, float) and 0 < value, "no distance")
+    require(type(value) in (int, float) and value > 0, "no distance")
     require(c["least"] == "touching", "an unknown claim")
     return Fraction(float(value)), "below" in c
 
