@@ -11,6 +11,7 @@ Inductive side := SideA | SideB.
 Record edge := Edge { edge_of : side; edge_to : nat }.
 Inductive reason :=
 | Meet
+| Near
 | Touch (direction : triple Z)
 | Cross (e1 e2 e3 : edge).
 Inductive cell :=
@@ -60,11 +61,13 @@ Definition or_zero (e : option Z) : Z := match e with None => 0 | Some e => e en
 Definition least_of_two (a b : option Z) : option Z :=
   match a, b with None, e => e | e, None => e | Some a, Some b => Some (Z.min a b) end.
 
-Definition exponents (s : scene) : Z * Z :=
+(** Numbers of the scale of the vertices in their poses. *)
+Definition distances_of (k : criterion) : list number := match k with Within w | Below w => [w] | _ => [] end.
+Definition exponents (s : scene) (k : criterion) : Z * Z :=
   let ev := or_zero (least_of_two (least_exponent (numbers_of_mesh (mesh_a s)))
                                   (least_exponent (numbers_of_mesh (mesh_b s)))) in
   let er := least_exponent (matrix_of (pose_a s) ++ matrix_of (pose_b s)) in
-  let et := least_exponent (shifts_of (pose_a s) ++ shifts_of (pose_b s)) in
+  let et := least_exponent (shifts_of (pose_a s) ++ shifts_of (pose_b s) ++ distances_of k) in
   (ev, or_zero (least_of_two er (match et with None => None | Some e => Some (e - ev) end))).
 
 Definition fits_mesh (ev : Z) (m : mesh) : bool :=
@@ -73,6 +76,23 @@ Definition fits_pose (ev er : Z) (p : pose) : bool :=
   forallb (fun r => forallb (fits er) (items (entries r)) && fits (ev + er) (shift r)) (items p).
 Definition fits_scene (ev er : Z) (s : scene) : bool :=
   fits_mesh ev (mesh_a s) && fits_mesh ev (mesh_b s) && fits_pose ev er (pose_a s) && fits_pose ev er (pose_b s).
+
+(** [criterion] in integers: in the scale of the vertices in their poses; a translation may have any scale. *)
+Inductive measure := Sharing | Distance (w : Z) (strict : bool) | Moving (t : triple Z).
+Definition scale_of (t : triple number) : Z := or_zero (least_exponent (items t)).
+Definition measure_of (e : Z) (k : criterion) : measure :=
+  match k with
+  | Meeting | CrossingOnly => Sharing
+  | Within w => Distance (whole e w) false
+  | Below w => Distance (whole e w) true
+  | Along t => Moving (map3 (whole (scale_of t)) t)
+  end.
+Definition fits_criterion (e : Z) (k : criterion) : bool :=
+  match k with
+  | Meeting | CrossingOnly => true
+  | Within w | Below w => fits e w
+  | Along t => forallb (fits (scale_of t)) (items t)
+  end.
 
 (** Triangles and quads only. *)
 Definition is_shape (f : face) : bool :=
@@ -89,6 +109,19 @@ Definition all_below (below : Z -> Z -> bool) (d : triple Z) (ps qs : list (trip
   negb (is_zero d) &&
   match highest d ps with None => false | Some top => forallb (fun q => below top (dot d q)) qs end.
 
+(** Does d part the points as the measure wants it? *)
+Definition separates (m : measure) (d : triple Z) (ps qs : list (triple Z)) : bool :=
+  match m with
+  | Sharing => all_below Z.ltb d ps qs
+  | Distance w strict =>
+    let least := w * w * dot d d in
+    all_below (fun top v => let gap := v - top in
+      (0 <? gap) && if strict then least <=? gap * gap else least <? gap * gap) d ps qs
+  | Moving t =>
+    let rise := dot d t in
+    if 0 <? rise then all_below Z.leb d ps qs else (rise =? 0) && all_below Z.ltb d ps qs
+  end.
+
 Fixpoint sum_z (ws : list Z) : Z := match ws with [] => 0 | w :: rest => w + sum_z rest end.
 Fixpoint weighted_z (ws vs : list Z) : Z :=
   match ws, vs with w :: ws, v :: vs => w * v + weighted_z ws vs | _, _ => 0 end.
@@ -103,6 +136,17 @@ Definition same_point (wa wb : list Z) (pa pb : list (triple Z)) : bool :=
   (weighted_z wa (map y pa) * tb =? weighted_z wb (map y pb) * ta) &&
   (weighted_z wa (map z pa) * tb =? weighted_z wb (map z pb) * ta).
 
+(** The difference of the two points, times both sums of weights. *)
+Definition close_points (w : Z) (strict : bool) (wa wb : list Z) (pa pb : list (triple Z)) : bool :=
+  let ta := sum_z wa in
+  let tb := sum_z wb in
+  let difference := fun coordinates : triple Z -> Z =>
+    weighted_z wa (map coordinates pa) * tb - weighted_z wb (map coordinates pb) * ta in
+  let d := Triple (difference x) (difference y) (difference z) in
+  let most := w * ta * tb in
+  (0 <? ta) && (0 <? tb) && same_length wa pa && same_length wb pb &&
+  if strict then dot d d <? most * most else dot d d <=? most * most.
+
 Definition vector (pa pb : list (triple Z)) (e : edge) : option (triple Z) :=
   let ps := match edge_of e with SideA => pa | SideB => pb end in
   match nth_error ps 0, nth_error ps (edge_to e) with
@@ -114,22 +158,24 @@ Definition determinant (a b c : triple Z) : Z :=
 
 Definition at_least (least : Z) (ws : list Z) : bool := forallb (fun w => least <=? w) ws.
 
-Definition reason_holds (why : reason) (wa wb : list Z) (pa pb : list (triple Z)) : bool :=
-  match why with
-  | Meet => at_least 0 wa && at_least 0 wb
-  | Touch d => at_least 0 wa && at_least 0 wb && all_below Z.leb d pa pb
-  | Cross e1 e2 e3 =>
-    at_least 1 wa && at_least 1 wb &&
+Definition reason_holds (m : measure) (why : reason) (wa wb : list Z) (pa pb : list (triple Z)) : bool :=
+  match m, why with
+  | Sharing, Meet => same_point wa wb pa pb && at_least 0 wa && at_least 0 wb
+  | Sharing, Touch d => same_point wa wb pa pb && at_least 0 wa && at_least 0 wb && all_below Z.leb d pa pb
+  | Distance w strict, Near => at_least 0 wa && at_least 0 wb && close_points w strict wa wb pa pb
+  | Sharing, Cross e1 e2 e3 =>
+    same_point wa wb pa pb && at_least 1 wa && at_least 1 wb &&
     match vector pa pb e1, vector pa pb e2, vector pa pb e3 with
     | Some a, Some b, Some c => negb (determinant a b c =? 0)
     | _, _, _ => false
     end
+  | _, _ => false
   end.
 
 Inductive kind := Meets | Touches | Crosses.
 Record entry := Entry { key_a : Z; key_b : Z; kind_of : kind }.
 Definition kind_of_reason (why : reason) : kind :=
-  match why with Meet => Meets | Touch _ => Touches | Cross _ _ _ => Crosses end.
+  match why with Meet | Near => Meets | Touch _ => Touches | Cross _ _ _ => Crosses end.
 
 (** Parts at the places [from], [from] + 1, ... of the order. *)
 Record group := Group { from : Z; parts : list part }.
@@ -146,19 +192,18 @@ Definition halves (g : group) (at_ : Z) : option (group * group) :=
   end.
 
 (** What one cell leaves to prove, and the entries that it finds. *)
-Definition step (c : cell) (ga gb : group) : option (list (group * group) * list entry) :=
+Definition step (m : measure) (c : cell) (ga gb : group) : option (list (group * group) * list entry) :=
   match c with
   | Split SideA at_ =>
     match halves ga at_ with Some (first, second) => Some ([(first, gb); (second, gb)], []) | None => None end
   | Split SideB at_ =>
     match halves gb at_ with Some (first, second) => Some ([(ga, first); (ga, second)], []) | None => None end
   | Separated d =>
-    if all_below Z.ltb d (flat_map corners (parts ga)) (flat_map corners (parts gb)) then Some ([], []) else None
+    if separates m d (flat_map corners (parts ga)) (flat_map corners (parts gb)) then Some ([], []) else None
   | Shared i j wa wb why =>
     match parts ga, parts gb with
     | [f], [g] =>
-      if (index f =? i) && (index g =? j) && same_point wa wb (corners f) (corners g)
-         && reason_holds why wa wb (corners f) (corners g)
+      if (index f =? i) && (index g =? j) && reason_holds m why wa wb (corners f) (corners g)
       then Some ([], [Entry (number_of f) (number_of g) (kind_of_reason why)]) else None
     | _, _ => None
     end
@@ -166,12 +211,12 @@ Definition step (c : cell) (ga gb : group) : option (list (group * group) * list
 
 Inductive outcome := Done (found : list entry) | Failed (from_cell : list cell).
 
-Fixpoint run (cs : list cell) (todo : list (group * group)) (found : list entry) : outcome :=
+Fixpoint run (m : measure) (cs : list cell) (todo : list (group * group)) (found : list entry) : outcome :=
   match cs, todo with
   | [], [] => Done found
   | c :: rest, (ga, gb) :: todo =>
-    match step c ga gb with
-    | Some (more, entries) => run rest (more ++ todo) (entries ++ found)
+    match step m c ga gb with
+    | Some (more, entries) => run m rest (more ++ todo) (entries ++ found)
     | None => Failed cs
     end
   | _, _ => Failed cs
@@ -251,8 +296,15 @@ Fixpoint ascend (gs : list pair_found) : bool :=
   | _ => true
   end.
 
+Definition only_crossing (c : claim) : bool := match counted c with CrossingOnly => true | _ => false end.
+(** Relations are told only of faces that meet. *)
+Definition about_meeting (c : claim) : bool := match counted c with Meeting | CrossingOnly => true | _ => false end.
+Definition is_untold (c : claim) : bool :=
+  match relation_of_meshes c with None => true | Some _ => false end &&
+  forallb (fun k => match told k with None => true | Some _ => false end) (contacts c).
+
 Definition is_told (c : claim) (g : pair_found) : bool := crosses g || (all c && negb (meets_only g)).
-Definition counted (c : claim) (g : pair_found) : bool := negb (only_crossing c) || crosses g.
+Definition is_counted (c : claim) (g : pair_found) : bool := negb (only_crossing c) || crosses g.
 
 Definition fulfils (c : claim) (g : pair_found) (k : contact) : bool :=
   (face_a k =? pair_a g) && (face_b k =? pair_b g) &&
@@ -270,9 +322,9 @@ Fixpoint all_fulfil (c : claim) (gs : list pair_found) (ks : list contact) : boo
   end.
 
 Definition claim_follows (c : claim) (gs : list pair_found) : bool :=
-  ascend gs &&
+  ascend gs && (about_meeting c || is_untold c) &&
   (negb (only_crossing c) || forallb (is_told c) gs) &&
-  all_fulfil c (filter (counted c) gs) (contacts c) &&
+  all_fulfil c (filter (is_counted c) gs) (contacts c) &&
   match relation_of_meshes c with
   | None => true
   | Some Crossing => existsb crosses gs
@@ -293,25 +345,26 @@ Definition conclude (c : certificate) (o : outcome) : verdict :=
   | Done found => if claim_follows (claimed c) (pairs_of found) then Accepted else ClaimFault
   end.
 
-Definition check_parts (c : certificate) (pa pb : list part) : verdict :=
+Definition check_parts (m : measure) (c : certificate) (pa pb : list part) : verdict :=
   if all (claimed c) then
     match ordered (order_a c) pa, ordered (order_b c) pb with
-    | Some sa, Some sb => conclude c (run (cells c) [(Group 0 sa, Group 0 sb)] [])
+    | Some sa, Some sb => conclude c (run m (cells c) [(Group 0 sa, Group 0 sb)] [])
     | _, _ => OrderFault
     end
   else
     match order_a c, order_b c, cells c, contacts (claimed c) with
     | [], [], [Shared i j _ _ _], [_] =>
       match find (fun f => index f =? i) pa, find (fun g => index g =? j) pb with
-      | Some f, Some g => conclude c (run (cells c) [(Group 0 [f], Group 0 [g])] [])
+      | Some f, Some g => conclude c (run m (cells c) [(Group 0 [f], Group 0 [g])] [])
       | _, _ => CellsFault (cells c)
       end
     | _, _, _, _ => OrderFault
     end.
 
 Definition check (s : scene) (c : certificate) : verdict :=
-  let (ev, er) := exponents s in
-  if negb (fits_scene ev er s) then ScaleFault
+  let k := counted (claimed c) in
+  let (ev, er) := exponents s k in
+  if negb (fits_scene ev er s && fits_criterion (ev + er) k) then ScaleFault
   else if negb (forallb is_shape (mesh_a s) && forallb is_shape (mesh_b s)) then ShapeFault
-  else check_parts c (place ev (whole_pose ev er (pose_a s)) 0 (mesh_a s))
-                     (place ev (whole_pose ev er (pose_b s)) 0 (mesh_b s)).
+  else check_parts (measure_of (ev + er) k) c (place ev (whole_pose ev er (pose_a s)) 0 (mesh_a s))
+                   (place ev (whole_pose ev er (pose_b s)) 0 (mesh_b s)).

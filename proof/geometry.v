@@ -92,6 +92,8 @@ Qed.
 Lemma in_rational v vs : In v (map rational vs) -> exists u, v = rational u /\ In u vs.
 Proof. intros I. apply in_map_iff in I. destruct I as (u & <- & I). eauto. Qed.
 
+Definition apart (vs us : list point) : Prop := ~ meet vs us.
+
 Lemma below_apart d ps qs : all_below Z.ltb d ps qs = true -> forall ps' qs', incl ps' ps -> incl qs' qs ->
   apart (map rational ps') (map rational qs').
 Proof.
@@ -136,6 +138,102 @@ Proof.
     destruct (Z.eqb_spec (x d) 0), (Z.eqb_spec (y d) 0), (Z.eqb_spec (z d) 0); try discriminate; nia. }
   nra.
 Qed.
+
+(** * Distances and translations *)
+
+(** What the measure asks of two faces. *)
+Definition related (m : measure) : list point -> list point -> Prop :=
+  match m with
+  | Sharing => meet
+  | Distance w strict => near (inject_Z w) strict
+  | Moving t => meet_along (rational t)
+  end.
+
+Lemma lowest_exists (f : point -> Q) u vs : exists v, In v (u :: vs) /\ forall w, In w (u :: vs) -> f v <= f w.
+Proof.
+  revert u; induction vs as [| a vs IH]; intros u.
+  - exists u. split; [now left |]. intros w [<- | []]. lra.
+  - destruct (IH a) as (v & I & L). destruct (Qlt_le_dec (f u) (f v)).
+    + exists u. split; [now left |]. intros w [<- | J]; [lra |]. apply L in J. lra.
+    + exists v. split; [now right |]. intros w [<- | J]; [lra | auto].
+Qed.
+(** A vertex lies at most as high as a point of the hull. *)
+Lemma lowest_vertex d vs p : hull vs p -> exists v, In v vs /\ dotq d v <= dotq d p.
+Proof.
+  intros H. destruct vs as [| u vs].
+  - destruct H as ([| w ws] & L & _ & S & _); cbn in *; [lra | discriminate].
+  - destruct (lowest_exists (dotq d) u vs) as (v & I & L). exists v. split; auto. now apply (hull_ge _ _ (u :: vs)).
+Qed.
+
+Lemma top_of_hull d top ps ps' p : (forall p, In p ps -> (dot d p <= top)%Z) -> incl ps' ps ->
+  hull (map rational ps') p -> dotq (rational d) p <= inject_Z top.
+Proof.
+  intros A I H. apply (hull_le _ _ (map rational ps')); auto. intros v J. apply in_rational in J.
+  destruct J as (u & -> & J). rewrite <- inject_dot. apply inject_le. auto.
+Qed.
+
+(** The inequality of Cauchy and Schwarz. *)
+Lemma dot_square d e : dotq d e * dotq d e <= dotq d d * dotq e e.
+Proof.
+  unfold dotq. set (a := x d * y e - y d * x e). set (b := y d * z e - z d * y e). set (c := z d * x e - x d * z e).
+  assert (0 <= a * a) by (destruct (Qlt_le_dec a 0); nra). assert (0 <= b * b) by (destruct (Qlt_le_dec b 0); nra).
+  assert (0 <= c * c) by (destruct (Qlt_le_dec c 0); nra). unfold a, b, c in *. lra.
+Qed.
+
+Lemma dot_self_positive d : is_zero d = false -> (0 < dot d d)%Z.
+Proof.
+  unfold is_zero, dot. intros N. destruct (Z.eqb_spec (x d) 0), (Z.eqb_spec (y d) 0), (Z.eqb_spec (z d) 0);
+    try discriminate; nia.
+Qed.
+
+Lemma gap_far w strict d ps qs : separates (Distance w strict) d ps qs = true -> forall ps' qs', incl ps' ps -> incl qs' qs ->
+  ~ near (inject_Z w) strict (map rational ps') (map rational qs').
+Proof.
+  intros H ps' qs' Ip Iq (p & q & Hp & Hq & Near). cbn [separates] in H.
+  apply all_below_spec in H. destruct H as (N & top & A & B).
+  pose proof (top_of_hull d top ps ps' p A Ip Hp) as Lp.
+  destruct (lowest_vertex (rational d) _ q Hq) as (v & I & Lq). apply in_rational in I. destruct I as (u & -> & I).
+  rewrite <- inject_dot in Lq. specialize (B u (Iq u I)). cbv zeta in B, Near.
+  apply andb_true_iff in B. destruct B as (Positive & B). apply Z.ltb_lt in Positive.
+  pose proof (dot_self_positive d N) as Dd. apply inject_lt in Dd. change (inject_Z 0) with 0 in Dd.
+  set (gap := (dot d u - top)%Z) in *. set (g := inject_Z gap).
+  assert (0 < g) as G by (change 0 with (inject_Z 0); now apply inject_lt).
+  assert (g == inject_Z (dot d u) - inject_Z top) as Eg.
+  { unfold g, gap, Zminus. now rewrite inject_Z_plus, inject_Z_opp. }
+  pose (e := Triple (x p - x q) (y p - y q) (z p - z q)).
+  assert (dotq (rational d) e == dotq (rational d) p - dotq (rational d) q) as Ee by (unfold dotq, e; cbn; ring).
+  pose proof (dot_square (rational d) e) as Cauchy. rewrite <- (inject_dot d d) in Cauchy.
+  set (dd := inject_Z (dot d d)) in *. set (de := dotq (rational d) e) in *.
+  assert (g * g <= de * de) as Le by (assert (g <= - de) by lra; nra).
+  change (dotq e e) with ((x p - x q) * (x p - x q) + (y p - y q) * (y p - y q) + (z p - z q) * (z p - z q)) in Cauchy.
+  set (square := (x p - x q) * (x p - x q) + (y p - y q) * (y p - y q) + (z p - z q) * (z p - z q)) in *.
+  set (ww := inject_Z w * inject_Z w) in *.
+  assert (inject_Z (w * w * dot d d) == ww * dd) as El by (unfold ww, dd; now rewrite !inject_Z_mult).
+  assert (inject_Z (gap * gap) == g * g) as Eq by (unfold g; now rewrite inject_Z_mult).
+  destruct strict.
+  - apply Z.leb_le, inject_le in B. rewrite El, Eq in B. assert (dd * square < ww * dd) by nra. lra.
+  - apply Z.ltb_lt, inject_lt in B. rewrite El, Eq in B. assert (dd * square <= ww * dd) by nra. lra.
+Qed.
+
+Lemma never_met t d ps qs : separates (Moving t) d ps qs = true -> forall ps' qs', incl ps' ps -> incl qs' qs ->
+  ~ meet_along (rational t) (map rational ps') (map rational qs').
+Proof.
+  intros H ps' qs' Ip Iq (k & K & p & q & Hp & Hq & X & Y & Z). cbn [x y z] in X, Y, Z.
+  assert (dotq (rational d) p == dotq (rational d) q + k * inject_Z (dot d t)) as E.
+  { rewrite inject_dot. unfold dotq. rewrite X, Y, Z. ring. }
+  destruct (lowest_vertex (rational d) _ q Hq) as (v & I & Lq). apply in_rational in I. destruct I as (u & -> & I).
+  rewrite <- inject_dot in Lq. cbn [separates] in H. cbv zeta in H. destruct (Z.ltb_spec 0 (dot d t)) as [Rise | _].
+  - apply all_below_spec in H. destruct H as (_ & top & A & B). pose proof (top_of_hull d top ps ps' p A Ip Hp) as Lp.
+    apply inject_lt in Rise. change (inject_Z 0) with 0 in Rise.
+    specialize (B u (Iq u I)). apply Z.leb_le, inject_le in B. assert (0 < k * inject_Z (dot d t)) by nra. lra.
+  - apply andb_true_iff in H. destruct H as (Zero & H). apply Z.eqb_eq in Zero. rewrite Zero in E.
+    apply all_below_spec in H. destruct H as (_ & top & A & B). pose proof (top_of_hull d top ps ps' p A Ip Hp) as Lp.
+    change (inject_Z 0) with 0 in E. specialize (B u (Iq u I)). apply Z.ltb_lt, inject_lt in B. lra.
+Qed.
+
+Lemma separates_sound m d ps qs : separates m d ps qs = true -> forall ps' qs', incl ps' ps -> incl qs' qs ->
+  ~ related m (map rational ps') (map rational qs').
+Proof. destruct m; [exact (below_apart d ps qs) | exact (gap_far w strict d ps qs) | exact (never_met t d ps qs)]. Qed.
 
 (** * Common points *)
 
@@ -215,6 +313,36 @@ Proof.
   intros A B S. destruct (same_point_close 0 0 wa wb pa pb A B S) as (_ & _ & p & q & P & Q & E).
   exists p, q. cbn. split; [| split]; auto; (eapply inside_less; [| eassumption]); change (inject_Z 0) with 0;
     unfold Qdiv; lra.
+Qed.
+
+Lemma close_points_near w strict wa wb pa pb :
+  at_least 0 wa = true -> at_least 0 wb = true -> close_points w strict wa wb pa pb = true ->
+  near (inject_Z w) strict (map rational pa) (map rational pb).
+Proof.
+  unfold close_points. cbv zeta. rewrite !andb_true_iff, !Z.ltb_lt. intros A B ((((Ta & Tb) & La) & Lb) & D).
+  apply same_length_spec in La. apply same_length_spec in Lb.
+  pose proof (inside_of_weights 0 wa pa A Ta La) as Ha. pose proof (inside_of_weights 0 wb pb B Tb Lb) as Hb.
+  apply inject_lt in Ta. apply inject_lt in Tb. change (inject_Z 0) with 0 in *. cbv zeta in Ha, Hb.
+  eexists. eexists. split; [eapply (inside_less _ 0); [| exact Ha]; unfold Qdiv; lra |].
+  split; [eapply (inside_less _ 0); [| exact Hb]; unfold Qdiv; lra |]. cbv zeta. cbn [x y z].
+  set (ta := inject_Z (sum_z wa)) in *. set (tb := inject_Z (sum_z wb)) in *.
+  assert (forall f : triple Z -> Z, inject_Z (weighted_z wa (map f pa)) / ta - inject_Z (weighted_z wb (map f pb)) / tb
+            == inject_Z (weighted_z wa (map f pa) * sum_z wb - weighted_z wb (map f pb) * sum_z wa) / (ta * tb)) as E.
+  { intros f. unfold Zminus. rewrite inject_Z_plus, inject_Z_opp, !inject_Z_mult. fold ta tb. field. lra. }
+  pose proof (E x) as Ex. pose proof (E y) as Ey. pose proof (E z) as Ez. clear E.
+  set (dx := (weighted_z wa (map x pa) * sum_z wb - weighted_z wb (map x pb) * sum_z wa)%Z) in *.
+  set (dy := (weighted_z wa (map y pa) * sum_z wb - weighted_z wb (map y pb) * sum_z wa)%Z) in *.
+  set (dz := (weighted_z wa (map z pa) * sum_z wb - weighted_z wb (map z pb) * sum_z wa)%Z) in *.
+  assert (0 < ta * tb) as P by nra. set (t := ta * tb) in *.
+  assert (0 < t * t) as Pt by nra.
+  assert (inject_Z dx / t * (inject_Z dx / t) + inject_Z dy / t * (inject_Z dy / t) + inject_Z dz / t * (inject_Z dz / t)
+          == inject_Z (dot (Triple dx dy dz) (Triple dx dy dz)) / (t * t)) as Square.
+  { unfold dot; cbn [x y z]. rewrite !inject_Z_plus, !inject_Z_mult. field. lra. }
+  assert (inject_Z (w * sum_z wa * sum_z wb * (w * sum_z wa * sum_z wb)) == inject_Z w * inject_Z w * (t * t)) as M.
+  { rewrite !inject_Z_mult. fold ta tb. unfold t. ring. }
+  destruct strict; rewrite Ex, Ey, Ez, Square.
+  - apply Z.ltb_lt, inject_lt in D. rewrite M in D. now apply Qlt_shift_div_r.
+  - apply Z.leb_le, inject_le in D. rewrite M in D. now apply Qle_shift_div_r.
 Qed.
 
 (** * Crossing: weights above 0 leave room in three directions *)
@@ -370,19 +498,19 @@ Proof.
   unfold at_least. rewrite !forallb_forall. intros H L w I. apply H in I. rewrite Z.leb_le in *. lia.
 Qed.
 
-Lemma reason_sound why wa wb pa pb : reason_holds why wa wb pa pb = true -> same_point wa wb pa pb = true ->
-  meet (map rational pa) (map rational pb) /\
+Lemma reason_sound m why wa wb pa pb : reason_holds m why wa wb pa pb = true ->
+  related m (map rational pa) (map rational pb) /\
   match why with
-  | Meet => True
+  | Meet | Near => True
   | Touch _ => touch (map rational pa) (map rational pb)
   | Cross _ _ _ => cross (map rational pa) (map rational pb)
   end.
 Proof.
-  intros H S. destruct why as [| d | e1 e2 e3]; cbn in H; rewrite !andb_true_iff in H.
+  intros H. destruct m as [| w strict |], why as [| | d | e1 e2 e3]; cbn in H; try discriminate; rewrite !andb_true_iff in H.
   - split; auto. apply (same_point_meet wa wb); tauto.
   - assert (meet (map rational pa) (map rational pb)) by (apply (same_point_meet wa wb); tauto).
     split; auto. split; auto. intros eps P. apply (below_parts d); tauto.
-  - destruct H as ((A & B) & H). split.
+  - destruct H as (((S & A) & B) & H). split.
     + apply (same_point_meet wa wb); auto; apply at_least_less; auto; lia.
     + destruct (vector pa pb e1) as [a |] eqn:E1; [| discriminate].
       destruct (vector pa pb e2) as [b |] eqn:E2; [| discriminate].
@@ -390,4 +518,5 @@ Proof.
       destruct (positive_least wa wb pa pb A B S) as (m & P & C).
       apply (cross_of_span m pa pb e1 e2 e3 a b c); auto.
       destruct (Z.eqb_spec (determinant a b c) 0); [discriminate | auto].
+  - split; auto. apply (close_points_near w strict wa wb); tauto.
 Qed.

@@ -6,7 +6,7 @@ type t =
   | Null
   | Bool of bool
   | Whole of Z.t  (* a number without point and exponent, and not -0 *)
-  | Other_number
+  | Other_number of float
   | String of string
   | List of t list
   | Object of (string * t) list
@@ -89,8 +89,9 @@ let parse text =
      | 'e' | 'E' -> incr at; (match peek () with '+' | '-' -> incr at | _ -> ()); digits ()
      | _ -> ());
     let word = String.sub text start (!at - start) in
-    if not (Float.is_finite (float_of_string word)) then fail "a number that no double can hold";
-    if whole && word <> "-0" then Whole (Z.of_string word) else Other_number in
+    let nearest = float_of_string word in
+    if not (Float.is_finite nearest) then fail "a number that no double can hold";
+    if whole && word <> "-0" then Whole (Z.of_string word) else Other_number nearest in
   let rec value depth =
     if depth > deepest then fail "too deep";
     blanks ();

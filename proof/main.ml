@@ -17,7 +17,8 @@ let reason total (verdict : Checked.verdict) = match verdict with
 
 (* Nothing, or why the certificate is refused. *)
 let check a b pose read =
-  if read.mesh_hashes <> (a.hash, b.hash) then Some "cell 0: the certificate is of other meshes"
+  if read.fault <> None then Option.map (fun why -> "claim: " ^ why) read.fault
+  else if read.mesh_hashes <> (a.hash, b.hash) then Some "cell 0: the certificate is of other meshes"
   else if read.poses_hash <> hash_poses identity pose then Some "cell 0: the certificate is of other poses"
   else
     let scene = { Checked.mesh_a = a.faces; pose_a = to_pose identity; mesh_b = b.faces; pose_b = to_pose pose } in
@@ -27,10 +28,17 @@ let in_words read =
   let c = read.certificate.claimed in
   let relation : Checked.relation option -> string = function
     | None -> "" | Some Apart -> ", apart" | Some Touching -> ", touching" | Some Crossing -> ", crossing" in
+  let number = to_text in
+  let faces_are, what = match c.counted with
+    | Meeting -> ("meets", "")
+    | CrossingOnly -> ("crosses", " of faces that cross")
+    | Within w -> ("is within " ^ number w ^ " of", " within " ^ number w)
+    | Below w -> ("is nearer than " ^ number w ^ " to", " below " ^ number w)
+    | Along t -> ("meets", Printf.sprintf " after any move of B along (%s, %s, %s)" (number t.x) (number t.y) (number t.z0)) in
   let contacts = match c.all, c.contacts with
-    | false, k :: _ -> Printf.sprintf "face %s of A meets face %s of B" (Z.to_string k.face_a) (Z.to_string k.face_b)
-    | _, [] -> "no contacts"
-    | _, l -> let n = List.length l in Printf.sprintf "%d contact%s and no others" n (if n = 1 then "" else "s") in
+    | false, k :: _ -> Printf.sprintf "face %s of A %s face %s of B" (Z.to_string k.face_a) faces_are (Z.to_string k.face_b)
+    | _, [] -> "no contacts" ^ what
+    | _, l -> let n = List.length l in Printf.sprintf "%d contact%s%s and no others" n (if n = 1 then "" else "s") what in
   contacts ^ relation c.relation_of_meshes
 
 let run a b file poses ~numbered ~single =

@@ -28,6 +28,14 @@ let exact value =
     let zeros = Z.trailing_zeros m in
     { mantissa = Z.shift_right m zeros; exponent = Z.of_int (e - 53 + zeros) }
 
+(* The double again, in the fewest digits that are read as the same. *)
+let to_text n =
+  let value = Float.ldexp (Z.to_float n.mantissa) (Z.to_int n.exponent) in
+  let rec shortest digits =
+    let text = Printf.sprintf "%.*g" digits value in
+    if digits >= 17 || float_of_string text = value then text else shortest (digits + 1) in
+  shortest 1
+
 (* A decimal number as the nearest double, by the C library's strtod. *)
 let decimal word =
   let size = String.length word in
@@ -223,7 +231,8 @@ let poses_of_csv path =
 
 (* Certificates. *)
 
-type certificate_read = { certificate : certificate; mesh_hashes : string * string; poses_hash : string; claimed_contacts : int }
+(* fault: why the certificate is refused, though it can be read *)
+type certificate_read = { certificate : certificate; mesh_hashes : string * string; poses_hash : string; fault : string option }
 
 let malformed what = raise (Json.Malformed what)
 let get fields key = match Json.find key fields with Some value -> value | None -> malformed ("no key " ^ key)
@@ -289,6 +298,7 @@ let cell line =
   | Json.String "split_b" -> Split (SideB, whole (get f "at"))
   | Json.String "separated" -> Separated (direction (get f "direction"))
   | Json.String "meet" -> point Meet
+  | Json.String "near" -> point Near
   | Json.String "touch" -> point (Touch (direction (get f "direction")))
   | Json.String "cross" ->
     (match map edge (list (get f "span")) with
@@ -298,25 +308,57 @@ let cell line =
 
 let version_key = "collisionchip_certificate"
 
+(* A number as the nearest double. *)
+let double = function
+  | Json.Whole n -> float_of_string (Z.to_string n)
+  | Json.Other_number value -> value
+  | _ -> malformed "not a number"
+
+let distance value =
+  let value = double value in
+  if value > 0.0 then exact value else malformed "a distance is above 0"
+
+(* What counts as a contact, and why the claim is refused, if it is. *)
+let criterion f =
+  let least = relation (get f "least") in
+  let along = Option.map (fun value -> List.map double (list value)) (Json.find "along" f) in
+  match Json.find "within" f, Json.find "below" f, along, least with
+  | Some _, Some _, _, _ -> malformed "two distances"
+  | _, _, _, None -> malformed "an unknown kind of contacts"
+  | within, below, along, Some least ->
+    let counted = match Option.map distance within, Option.map distance below, along with
+      | Some w, _, None -> Within w
+      | None, Some w, None -> Below w
+      | None, None, Some [ x; y; z0 ] -> Along { x = exact x; y = exact y; z0 = exact z0 }
+      | None, None, None -> if least = Crossing then CrossingOnly else Meeting
+      | _, _, Some [ _; _; _ ] -> Meeting (* refused below *)
+      | _ -> malformed "a translation has three numbers" in
+    let other = within <> None || below <> None || along <> None in
+    let fault =
+      if least = Apart || (other && least <> Touching) then Some "an unknown kind of contacts"
+      else if along <> None && (within <> None || below <> None) then Some "a distance and a translation"
+      else if along = Some [ 0.0; 0.0; 0.0 ] then Some "the translation is 0"
+      else None in
+    (counted, fault)
+
 let claim line cells =
   let f = fields line in
-  (match get f version_key with
-   | Json.Whole n when Z.equal n Z.one -> ()
-   | _ -> malformed "no certificate of version 1");
+  let counted, fault = criterion f in
+  let fault = match get f version_key with
+    | Json.Whole n when Z.equal n Z.one || Z.equal n (Z.of_int 2) ->
+      let expected = if List.exists (fun key -> Json.find key f <> None) [ "within"; "below"; "along" ] then 2 else 1 in
+      if Z.equal n (Z.of_int expected) then fault else Some "a version that does not fit the claim"
+    | _ -> malformed "no certificate of version 1 or 2" in
   let contact value = match list value with
     | [ a; b; told ] -> { face_a = whole a; face_b = whole b; told = relation told }
     | _ -> malformed "a contact is two faces and a relation" in
   let contacts = map contact (list (get f "contacts")) in
   let all = match get f "all" with Json.Bool all -> all | _ -> malformed "all is true or false" in
-  let only_crossing = match relation (get f "least") with
-    | Some Touching -> false
-    | Some Crossing -> true
-    | _ -> malformed "an unknown kind of contacts" in
   { certificate =
-      { claimed = { all; only_crossing; relation_of_meshes = relation (get f "relation"); contacts };
+      { claimed = { all; counted; relation_of_meshes = relation (get f "relation"); contacts };
         order_a = order (get f "order_a"); order_b = order (get f "order_b"); cells };
     mesh_hashes = (hash (get f "mesh_a"), hash (get f "mesh_b")); poses_hash = hash (get f "poses");
-    claimed_contacts = List.length contacts }
+    fault }
 
 let begins = function Json.Object fields -> Json.find version_key fields <> None | _ -> false
 

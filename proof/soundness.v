@@ -125,7 +125,57 @@ Section Similar.
       repeat split; apply G; tauto.
     - intros K. apply N. apply moved_times in K. apply (moved_equal _ _ _ _) with (4 := K); cbn; field; lra.
   Qed.
+
+  Lemma near_similar w w' strict : w' == s * w -> near w' strict Xs Ys <-> near w strict ps qs.
+  Proof.
+    intros W. unfold near; cbv zeta. split; intros (p & q & Hp & Hq & H).
+    - exists (times (/ s) p), (times (/ s) q). split; [eapply hull_divided; eauto |]. split; [eapply hull_divided; eauto |].
+      cbn. assert (0 < / s) as I by now apply Qinv_lt_0_compat. set (i := / s) in *.
+      assert (w == i * w') as E by (rewrite W; unfold i; field; lra).
+      assert (0 < i * i) as Pi by nra.
+      set (square := (x p - x q) * (x p - x q) + (y p - y q) * (y p - y q) + (z p - z q) * (z p - z q)) in *.
+      assert ((i * x p - i * x q) * (i * x p - i * x q) + (i * y p - i * y q) * (i * y p - i * y q)
+              + (i * z p - i * z q) * (i * z p - i * z q) == i * i * square) as S by (unfold square; ring).
+      assert (w * w == i * i * (w' * w')) as V by (rewrite E; ring).
+      destruct strict; rewrite S, V; [apply Qmult_lt_l | apply Qmult_le_l]; auto.
+    - exists (times s p), (times s q). split; [eapply hull_times; eauto |]. split; [eapply hull_times; eauto |].
+      cbn. assert (0 < s * s) as Pi by nra.
+      set (square := (x p - x q) * (x p - x q) + (y p - y q) * (y p - y q) + (z p - z q) * (z p - z q)) in *.
+      assert ((s * x p - s * x q) * (s * x p - s * x q) + (s * y p - s * y q) * (s * y p - s * y q)
+              + (s * z p - s * z q) * (s * z p - s * z q) == s * s * square) as S by (unfold square; ring).
+      assert (w' * w' == s * s * (w * w)) as V by (rewrite W; ring).
+      destruct strict; rewrite S, V; [apply Qmult_lt_l | apply Qmult_le_l]; auto.
+  Qed.
+
+  (** The translation may have a scale f of its own. *)
+  Lemma along_similar f t t' : 0 < f -> x t' == f * x t -> y t' == f * y t -> z t' == f * z t ->
+    meet_along t' Xs Ys <-> meet_along t ps qs.
+  Proof.
+    intros F X Y Z. split; intros (k & K & M).
+    - exists (k * f / s). split; [apply Qlt_shift_div_l; [auto | nra] |].
+      apply moved_back in M. apply (moved_equal _ _ _ _) with (4 := M); cbn; rewrite ?X, ?Y, ?Z; field; lra.
+    - exists (s * k / f). split; [apply Qlt_shift_div_l; [auto | nra] |].
+      apply moved_times in M. apply (moved_equal _ _ _ _) with (4 := M); cbn; rewrite ?X, ?Y, ?Z; field; lra.
+  Qed.
 End Similar.
+
+(** What decides of two faces whether the certificate speaks of them: those that cross are among those that meet. *)
+Definition base (k : criterion) : list point -> list point -> Prop :=
+  match k with CrossingOnly => meet | _ => counts_as_contact k end.
+
+Lemma related_similar ev er k Xs Ys ps qs : fits_criterion (ev + er) k = true ->
+  similar (factor ev er) Xs ps -> similar (factor ev er) Ys qs ->
+  related (measure_of (ev + er) k) Xs Ys <-> base k ps qs.
+Proof.
+  intros F A B. pose proof (factor_positive ev er) as P. destruct k as [| | w | w | t]; cbn in F |- *.
+  - now apply (meet_similar _ _ _ _ _ P).
+  - now apply (meet_similar _ _ _ _ _ P).
+  - apply (near_similar _ _ _ _ _ P A B). rewrite whole_value by auto. unfold factor. ring.
+  - apply (near_similar _ _ _ _ _ P A B). rewrite whole_value by auto. unfold factor. ring.
+  - rewrite !andb_true_iff in F. destruct F as (Fx & Fy & Fz & _).
+    apply (along_similar _ _ _ _ _ P A B (Qpower 2 (- scale_of t))); [apply Qpower_0_lt; reflexivity | ..];
+      cbn; rewrite whole_value by auto; ring.
+Qed.
 
 (** * Touching and crossing exclude each other *)
 
@@ -139,13 +189,13 @@ Proof. intros (eps & E & H). apply H. unfold shorter; cbn. repeat split; lra. Qe
 Definition shape (f : part) : list point := map rational (corners f).
 
 (** The entry e of the faces f and g is true. *)
-Definition about (e : entry) (f g : part) : Prop :=
-  key_a e = number_of f /\ key_b e = number_of g /\ meet (shape f) (shape g) /\
+Definition about (m : measure) (e : entry) (f g : part) : Prop :=
+  key_a e = number_of f /\ key_b e = number_of g /\ related m (shape f) (shape g) /\
   (kind_of e = Crosses -> cross (shape f) (shape g)) /\ (kind_of e = Touches -> touch (shape f) (shape g)).
 
-(** The pair f, g is decided: apart, or among the entries. *)
-Definition decided (found : list entry) (f g : part) : Prop :=
-  apart (shape f) (shape g) \/ exists e, In e found /\ about e f g.
+(** The pair f, g is decided: not related, or among the entries. *)
+Definition decided (m : measure) (found : list entry) (f g : part) : Prop :=
+  ~ related m (shape f) (shape g) \/ exists e, In e found /\ about m e f g.
 
 Lemma cut_spec {T} (rest : list T) : forall n taken l m, cut n taken rest = (l, m) ->
   forall a, In a taken \/ In a rest <-> In a l \/ In a m.
@@ -166,10 +216,10 @@ Proof.
   cbn [rev_append]. rewrite rev_append_rev, in_app_iff, <- in_rev. cbn [In] in *. tauto.
 Qed.
 
-Lemma step_spec c ga gb more entries : step c ga gb = Some (more, entries) ->
+Lemma step_spec m c ga gb more entries : step m c ga gb = Some (more, entries) ->
   (forall f g, In f (parts ga) -> In g (parts gb) ->
-    decided entries f g \/ exists ha hb, In (ha, hb) more /\ In f (parts ha) /\ In g (parts hb)) /\
-  (forall e, In e entries -> exists f g, In f (parts ga) /\ In g (parts gb) /\ about e f g) /\
+    decided m entries f g \/ exists ha hb, In (ha, hb) more /\ In f (parts ha) /\ In g (parts hb)) /\
+  (forall e, In e entries -> exists f g, In f (parts ga) /\ In g (parts gb) /\ about m e f g) /\
   (forall ha hb, In (ha, hb) more -> incl (parts ha) (parts ga) /\ incl (parts hb) (parts gb)).
 Proof.
   destruct c as [[|] at_ | d | i j wa wb why]; cbn.
@@ -183,17 +233,17 @@ Proof.
     + intros f g F G. right. apply S in G. destruct G; [exists ga, first | exists ga, second]; cbn; auto.
     + intros e [].
     + intros ha hb [K | [K | []]]; injection K as <- <-; (split; [apply incl_refl | intros f F; apply S; auto]).
-  - destruct (all_below Z.ltb d _ _) eqn:E; [| discriminate]. intros H. injection H as <- <-.
+  - destruct (separates m d _ _) eqn:E; [| discriminate]. intros H. injection H as <- <-.
     split; [| split; [intros e [] | intros ha hb []]].
-    intros f g F G. left. left. apply (below_apart d _ _ E).
+    intros f g F G. left. left. apply (separates_sound m d _ _ E).
     + intros p P. apply in_flat_map. eauto.
     + intros p P. apply in_flat_map. eauto.
   - destruct (parts ga) as [| f [|]]; [discriminate | | discriminate].
     destruct (parts gb) as [| g [|]]; [discriminate | | discriminate].
-    destruct ((index f =? i)%Z && (index g =? j)%Z && _ && _) eqn:E; [| discriminate].
-    rewrite !andb_true_iff in E. destruct E as ((_ & S) & R).
-    intros H. injection H as <- <-. destruct (reason_sound _ _ _ _ _ R S) as (M & W).
-    assert (about (Entry (number_of f) (number_of g) (kind_of_reason why)) f g) as K.
+    destruct ((index f =? i)%Z && (index g =? j)%Z && _) eqn:E; [| discriminate].
+    rewrite !andb_true_iff in E. destruct E as (_ & R).
+    intros H. injection H as <- <-. destruct (reason_sound _ _ _ _ _ _ R) as (M & W).
+    assert (about m (Entry (number_of f) (number_of g) (kind_of_reason why)) f g) as K.
     { unfold about; cbn. split; [auto |]. split; [auto |]. split; [exact M |].
       destruct why; cbn in *; split; intros D; try discriminate; exact W. }
     split; [| split].
@@ -202,17 +252,17 @@ Proof.
     + intros ha hb [].
 Qed.
 
-Lemma run_spec (fs gs : list part) cs : forall todo found result, run cs todo found = Done result ->
+Lemma run_spec m (fs gs : list part) cs : forall todo found result, run m cs todo found = Done result ->
   (forall ha hb, In (ha, hb) todo -> incl (parts ha) fs /\ incl (parts hb) gs) ->
-  (forall e, In e found -> exists f g, In f fs /\ In g gs /\ about e f g) ->
-  (forall e, In e result -> exists f g, In f fs /\ In g gs /\ about e f g) /\
+  (forall e, In e found -> exists f g, In f fs /\ In g gs /\ about m e f g) ->
+  (forall e, In e result -> exists f g, In f fs /\ In g gs /\ about m e f g) /\
   incl found result /\
-  (forall ha hb f g, In (ha, hb) todo -> In f (parts ha) -> In g (parts hb) -> decided result f g).
+  (forall ha hb f g, In (ha, hb) todo -> In f (parts ha) -> In g (parts hb) -> decided m result f g).
 Proof.
   induction cs as [| c cs IH]; intros [| (ga, gb) todo] found result; cbn; intros R T F; try discriminate.
   - injection R as <-. split; auto. split; [apply incl_refl | intros ha hb f g []].
-  - destruct (step c ga gb) as [(more, entries) |] eqn:E; [| discriminate].
-    destruct (step_spec _ _ _ _ _ E) as (S1 & S2 & S3).
+  - destruct (step m c ga gb) as [(more, entries) |] eqn:E; [| discriminate].
+    destruct (step_spec _ _ _ _ _ _ E) as (S1 & S2 & S3).
     destruct (T ga gb (or_introl eq_refl)) as (Ta & Tb).
     destruct (IH _ _ _ R) as (R1 & R2 & R3).
     + intros ha hb I. apply in_app_or in I. destruct I as [I | I]; [| auto].
@@ -378,19 +428,19 @@ Qed.
 
 Section Claim.
   Variables (s : scene) (c : claim) (found : list entry).
-  Let related (rel : list point -> list point -> Prop) f g := rel (placed (pose_a s) f) (placed (pose_b s) g).
+  Let between (rel : list point -> list point -> Prop) f g := rel (placed (pose_a s) f) (placed (pose_b s) g).
   Definition true_entry e (f g : face) : Prop :=
-    key_a e = number_in_file f /\ key_b e = number_in_file g /\ related meet f g /\
-    (kind_of e = Crosses -> related cross f g) /\ (kind_of e = Touches -> related touch f g).
+    key_a e = number_in_file f /\ key_b e = number_in_file g /\ between (base (counted c)) f g /\
+    (kind_of e = Crosses -> between cross f g) /\ (kind_of e = Touches -> between touch f g).
   Hypothesis entries_true : forall e, In e found ->
     exists f g, In f (mesh_a s) /\ In g (mesh_b s) /\ true_entry e f g.
   Hypothesis all_decided : all c = true -> forall f g, In f (mesh_a s) -> In g (mesh_b s) ->
-    related apart f g \/ exists e, In e found /\ true_entry e f g.
+    ~ between (base (counted c)) f g \/ exists e, In e found /\ true_entry e f g.
   Hypothesis follows : claim_follows c (pairs_of found) = true.
   Hypothesis one : all c = false -> length (contacts c) = 1%nat.
   Let gs := pairs_of found.
 
-  Lemma pair_meets g : In g gs -> faces_meet s (pair_a g) (pair_b g).
+  Lemma pair_related g : In g gs -> some_parts (base (counted c)) s (pair_a g) (pair_b g).
   Proof.
     intros I. destruct (proj1 (proj2 (pairs_of_spec found)) g I) as (e & J & -> & ->).
     destruct (entries_true e J) as (f & h & F & H & -> & -> & M & _). exists f, h. auto.
@@ -402,31 +452,36 @@ Section Claim.
     specialize (X K). exists f, h. auto.
   Qed.
 
+  Lemma base_meet : about_meeting c = true -> base (counted c) = meet.
+  Proof. unfold about_meeting. now destruct (counted c). Qed.
+  Lemma pair_meets g : about_meeting c = true -> In g gs -> faces_meet s (pair_a g) (pair_b g).
+  Proof. intros B I. apply pair_related in I. now rewrite (base_meet B) in I. Qed.
+
   Lemma ascending : ascend gs = true.
   Proof. unfold claim_follows in follows. rewrite !andb_true_iff in follows. tauto. Qed.
 
-  (** Faces that meet have a pair, and it tells whether they cross, if all is told. *)
-  Lemma met_found i j : all c = true -> faces_meet s i j -> exists g, In g gs /\ pair_a g = i /\ pair_b g = j.
+  (** Faces that are related have a pair, and if they meet it tells whether they cross, if all is told. *)
+  Lemma met_found i j : all c = true -> some_parts (base (counted c)) s i j -> exists g, In g gs /\ pair_a g = i /\ pair_b g = j.
   Proof.
     intros All (f & g & F & G & <- & <- & M). destruct (all_decided All f g F G) as [A | (e & I & T)]; [now elim A |].
     destruct (proj1 (pairs_of_spec found) e I) as (h & J & Ka & Kb & _). destruct T as (Ta & Tb & _).
     exists h. now rewrite Ka, Kb, Ta, Tb.
   Qed.
-  Lemma crossing_found i j : all c = true -> faces_cross s i j -> exists g, In g gs /\ pair_a g = i /\ pair_b g = j /\
+  Lemma crossing_found i j : about_meeting c = true -> all c = true -> faces_cross s i j -> exists g, In g gs /\ pair_a g = i /\ pair_b g = j /\
     (crosses g = true \/ meets_only g = true).
   Proof.
-    intros All (f & g & F & G & <- & <- & X). destruct (all_decided All f g F G) as [A | (e & I & T)].
-    - elim A. now apply cross_meet.
+    intros B All (f & g & F & G & <- & <- & X). destruct (all_decided All f g F G) as [A | (e & I & T)].
+    - elim A. rewrite (base_meet B). now apply cross_meet.
     - destruct (proj1 (pairs_of_spec found) e I) as (h & J & Ka & Kb & Kc & Km).
       destruct T as (Ta & Tb & _ & _ & Tt). exists h. rewrite Ka, Kb, Ta, Tb.
       split; [auto |]. split; [auto |]. split; [auto |].
       destruct (kind_of e); auto. elim (cross_not_touch _ _ X (Tt eq_refl)).
   Qed.
-  Lemma told_not_crossing g : In g gs -> is_told c g = true -> crosses g = false ->
+  Lemma told_not_crossing g : about_meeting c = true -> In g gs -> is_told c g = true -> crosses g = false ->
     ~ faces_cross s (pair_a g) (pair_b g).
   Proof.
-    unfold is_told. intros I T N X. rewrite N in T. cbn in T. apply andb_true_iff in T. destruct T as (All & T).
-    destruct (crossing_found _ _ All X) as (h & J & Ea & Eb & K).
+    unfold is_told. intros B I T N X. rewrite N in T. cbn in T. apply andb_true_iff in T. destruct T as (All & T).
+    destruct (crossing_found _ _ B All X) as (h & J & Ea & Eb & K).
     assert (h = g) as -> by (apply (ascend_once gs ascending); auto).
     destruct K as [K | K]; rewrite K in *; discriminate.
   Qed.
@@ -434,35 +489,50 @@ Section Claim.
   Theorem claim_holds : holds c s.
   Proof.
     pose proof follows as H. unfold claim_follows in H. fold gs in H. rewrite !andb_true_iff in H.
-    destruct H as (((_ & Told) & Fulfil) & Meshes). split; [| split; [| split]].
+    destruct H as ((((_ & Untold) & Told) & Fulfil) & Meshes). rewrite orb_true_iff in Untold.
+    assert (relation_of_meshes c <> None -> about_meeting c = true) as Meeting_meshes.
+    { intros N. destruct Untold as [U | U]; [auto |]. unfold is_untold in U. now destruct (relation_of_meshes c). }
+    assert (forall k, In k (contacts c) -> told k <> None -> about_meeting c = true) as Meeting_faces.
+    { intros k I N. destruct Untold as [U | U]; [auto |]. unfold is_untold in U. apply andb_true_iff in U.
+      destruct U as (_ & U). rewrite forallb_forall in U. specialize (U k I). now destruct (told k). } split; [| split; [| split]].
     - intros k I. destruct (all_fulfil_contact _ _ _ Fulfil k I) as (g & J & F).
       apply filter_In in J. destruct J as (J & Counted). unfold fulfils in F. rewrite !andb_true_iff, !Z.eqb_eq in F.
-      destruct F as ((Ea & Eb) & F). unfold contact_holds, is_contact. rewrite Ea, Eb. split.
-      + unfold counted in Counted. destruct (only_crossing c); cbn in Counted; [now apply pair_crosses | now apply pair_meets].
+      destruct F as ((Ea & Eb) & F). unfold contact_holds, is_contact. specialize (Meeting_faces k I).
+      rewrite Ea, Eb. split.
+      + pose proof (pair_related g J) as R. unfold is_counted, only_crossing in Counted.
+        destruct (counted c); cbn in *; auto. now apply pair_crosses.
       + destruct (told k) as [[| |] |]; auto; try discriminate.
-        * apply andb_true_iff in F. destruct F as (T & N). split; [now apply pair_meets |].
+        * assert (about_meeting c = true) as B by (apply Meeting_faces; discriminate).
+          apply andb_true_iff in F. destruct F as (T & N). split; [now apply pair_meets |].
           apply told_not_crossing; auto. now destruct (crosses g).
         * now apply pair_crosses.
     - rewrite (all_fulfil_keys _ _ _ Fulfil). apply ascend_nodup, ascending.
-    - assert (all c = true \/ all c = false) as [All | All] by (destruct (all c); auto); rewrite All; [| auto]. intros i j. unfold is_contact. intros C.
-      assert (exists g, In g (filter (counted c) gs) /\ pair_a g = i /\ pair_b g = j) as (g & I & <- & <-).
-      { unfold counted. destruct (only_crossing c) eqn:O; cbn in *.
-        - destruct (crossing_found i j All C) as (g & I & Ea & Eb & K). exists g. rewrite filter_In.
+    - assert (all c = true \/ all c = false) as [All | All] by (destruct (all c); auto); rewrite All; [| auto].
+      intros i j. unfold is_contact. intros C.
+      assert (exists g, In g (filter (is_counted c) gs) /\ pair_a g = i /\ pair_b g = j) as (g & I & <- & <-).
+      { unfold is_counted. destruct (only_crossing c) eqn:O; cbn [negb orb] in *.
+        - assert (counted c = CrossingOnly) as K by (unfold only_crossing in O; now destruct (counted c)).
+          assert (about_meeting c = true) as B by (unfold about_meeting; now rewrite K).
+          rewrite K in C. destruct (crossing_found i j B All C) as (g & I & Ea & Eb & X). exists g. rewrite filter_In.
           repeat split; auto. rewrite forallb_forall in Told. specialize (Told g I). unfold is_told in Told.
-          destruct (crosses g); auto. destruct K as [K | K]; [auto |]. rewrite K, andb_false_r in Told. discriminate.
-        - destruct (met_found i j All C) as (g & I & Ea & Eb). exists g. rewrite filter_In. auto. }
+          destruct (crosses g); auto. destruct X as [X | X]; [auto |]. rewrite X, andb_false_r in Told. discriminate.
+        - assert (counts_as_contact (counted c) = base (counted c)) as K by
+            (unfold only_crossing in O; now destruct (counted c)).
+          rewrite K in C. destruct (met_found i j All C) as (g & I & Ea & Eb). exists g. rewrite filter_In. auto. }
       destruct (all_fulfil_pair _ _ _ Fulfil g I) as (k & J & F). exists k. split; auto.
       unfold fulfils in F. rewrite !andb_true_iff, !Z.eqb_eq in F. tauto.
-    - destruct (relation_of_meshes c) as [[| |] |]; cbn in *; auto.
-      + apply andb_true_iff in Meshes. destruct Meshes as (All & E). intros i j M. destruct (met_found i j All M) as (g & I & _).
+    - destruct (relation_of_meshes c) as [r |]; [| auto].
+      assert (about_meeting c = true) as B by (apply Meeting_meshes; discriminate).
+      pose proof met_found as Found. rewrite (base_meet B) in Found. destruct r; cbn in *.
+      + apply andb_true_iff in Meshes. destruct Meshes as (All & E). intros i j M. destruct (Found i j All M) as (g & I & _).
         destruct gs; [destruct I | discriminate].
       + rewrite !andb_true_iff in Meshes. destruct Meshes as ((All & E) & N).
         rewrite forallb_forall in N. split.
         * assert (exists g, In g gs) as (g & I) by (destruct gs as [| g]; [discriminate | exists g; left; auto]).
           exists (pair_a g), (pair_b g). now apply pair_meets.
-        * intros i j X. destruct (crossing_found i j All X) as (g & I & <- & <- & _).
+        * intros i j X. destruct (crossing_found i j B All X) as (g & I & <- & <- & _).
           specialize (N g I). apply andb_true_iff in N. destruct N as (T & N).
-          apply (told_not_crossing g I T); auto. now destruct (crosses g).
+          apply (told_not_crossing g B I T); auto. now destruct (crosses g).
       + apply existsb_exists in Meshes. destruct Meshes as (g & I & X). exists (pair_a g), (pair_b g).
         now apply pair_crosses.
   Qed.
@@ -495,7 +565,9 @@ Qed.
 
 Theorem accepted_holds s c : check s c = Accepted -> holds (claimed c) s.
 Proof.
-  unfold check. destruct (exponents s) as (ev, er). destruct (fits_scene ev er s) eqn:F; [cbn [negb] | discriminate].
+  unfold check. cbv zeta. set (k := counted (claimed c)). destruct (exponents s k) as (ev, er).
+  destruct (fits_scene ev er s && fits_criterion (ev + er) k) eqn:F; [cbn [negb] | discriminate].
+  apply andb_true_iff in F. destruct F as (F & Fk). set (m := measure_of (ev + er) k) in *.
   destruct (forallb is_shape (mesh_a s) && forallb is_shape (mesh_b s)); [cbn [negb] | discriminate].
   unfold fits_scene in F. rewrite !andb_true_iff in F. destruct F as (((Ma & Mb) & Pa) & Pb).
   set (pa := place _ _ _ (mesh_a s)). set (pb := place _ _ _ (mesh_b s)).
@@ -506,20 +578,21 @@ Proof.
   assert (forall f g u v e, In f (mesh_a s) -> In g (mesh_b s) ->
             number_of u = number_in_file f /\ corners u = map (fun v => posed_z (whole_pose ev er (pose_a s)) (map3 (whole ev) v)) (vertices f) ->
             number_of v = number_in_file g /\ corners v = map (fun v => posed_z (whole_pose ev er (pose_b s)) (map3 (whole ev) v)) (vertices g) ->
-            (about e u v -> true_entry s e f g) /\
-            (apart (shape u) (shape v) -> apart (placed (pose_a s) f) (placed (pose_b s) g))) as Transfer.
+            (about m e u v -> true_entry s (claimed c) e f g) /\
+            (~ related m (shape u) (shape v) -> ~ base k (placed (pose_a s) f) (placed (pose_b s) g))) as Transfer.
   { intros f g u v e If Ig (Nu & Cu) (Nv & Cv).
     pose proof (posed_similar ev er _ _ Ma Pa f If) as Sf. pose proof (posed_similar ev er _ _ Mb Pb g Ig) as Sg.
-    rewrite <- Cu in Sf. rewrite <- Cv in Sg. fold (shape u) in Sf. fold (shape v) in Sg. split.
+    rewrite <- Cu in Sf. rewrite <- Cv in Sg. fold (shape u) in Sf. fold (shape v) in Sg.
+    pose proof (related_similar ev er k _ _ _ _ Fk Sf Sg) as Same. split.
     - intros (Ka & Kb & M & X & T). unfold true_entry. rewrite <- Nu, <- Nv. split; [auto |]. split; [auto |].
       split; [| split].
-      + now apply (meet_similar _ _ _ _ _ Positive Sf Sg).
+      + now apply Same.
       + intros K. apply (cross_similar _ _ _ _ _ Positive Sf Sg). auto.
       + intros K. apply (touch_similar _ _ _ _ _ Positive Sf Sg). auto.
-    - intros N M. apply N. now apply (meet_similar _ _ _ _ _ Positive Sf Sg). }
+    - intros N M. apply N. now apply Same. }
   assert (forall found fs gs, (forall f, In f fs -> In f pa) -> (forall g, In g gs -> In g pb) ->
-            (forall e, In e found -> exists f g, In f fs /\ In g gs /\ about e f g) ->
-            forall e, In e found -> exists f g, In f (mesh_a s) /\ In g (mesh_b s) /\ true_entry s e f g) as Entries.
+            (forall e, In e found -> exists f g, In f fs /\ In g gs /\ about m e f g) ->
+            forall e, In e found -> exists f g, In f (mesh_a s) /\ In g (mesh_b s) /\ true_entry s (claimed c) e f g) as Entries.
   { intros found fs gs Ifs Igs H e I. destruct (H e I) as (u & v & U & V & K).
     destruct (forall2_right _ _ _ A u (Ifs u U)) as (f & If & Rf).
     destruct (forall2_right _ _ _ B v (Igs v V)) as (g & Ig & Rg).
@@ -530,7 +603,7 @@ Proof.
     pose proof (ordered_spec _ _ _ Oa) as Sa. pose proof (ordered_spec _ _ _ Ob) as Sb.
     destruct (run _ _ _) as [found | rest] eqn:R; [| discriminate]. cbn.
     destruct (claim_follows _ _) eqn:Follows; [| discriminate]. intros _.
-    destruct (run_spec sa sb _ _ _ _ R) as (Sound & _ & Cover).
+    destruct (run_spec m sa sb _ _ _ _ R) as (Sound & _ & Cover).
     + intros ha hb [K | []]. injection K as <- <-. split; apply incl_refl.
     + intros e [].
     + apply (claim_holds s (claimed c) found); auto.
@@ -543,12 +616,12 @@ Proof.
       * congruence.
   - destruct (order_a c); [| discriminate]. destruct (order_b c); [| discriminate].
     destruct (cells c) as [| [| | i j wa wb why] [|]] eqn:Cells; try discriminate.
-    destruct (contacts (claimed c)) as [| k [|]] eqn:Contacts; try discriminate.
+    destruct (contacts (claimed c)) as [| one [|]] eqn:Contacts; try discriminate.
     destruct (find _ pa) as [u |] eqn:U; [| discriminate]. destruct (find _ pb) as [v |] eqn:V; [| discriminate].
     apply find_some in U. apply find_some in V.
     destruct (run _ _ _) as [found | rest] eqn:R; [| discriminate]. unfold conclude.
     destruct (claim_follows _ _) eqn:Follows; [| discriminate]. intros _.
-    destruct (run_spec [u] [v] _ _ _ _ R) as (Sound & _ & _).
+    destruct (run_spec m [u] [v] _ _ _ _ R) as (Sound & _ & _).
     + intros ha hb [K | []]. injection K as <- <-. split; apply incl_refl.
     + intros e [].
     + apply (claim_holds s (claimed c) found); auto.

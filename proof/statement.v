@@ -54,13 +54,20 @@ Definition shorter (eps : Q) (t : point) : Prop :=
   (- eps < x t /\ x t < eps) /\ (- eps < y t /\ y t < eps) /\ (- eps < z t /\ z t < eps).
 
 Definition meet (vs us : list point) : Prop := meet_moved (Triple 0 0 0) vs us.
-Definition apart (vs us : list point) : Prop := ~ meet vs us.
 (** Every translation that is short enough leaves them in contact. *)
 Definition cross (vs us : list point) : Prop :=
   exists eps, 0 < eps /\ forall t, shorter eps t -> meet_moved t vs us.
 (** They meet, and among the translations that are shorter than any eps there is one that parts them. *)
 Definition touch (vs us : list point) : Prop :=
   meet vs us /\ forall eps, 0 < eps -> exists t, shorter eps t /\ ~ meet_moved t vs us.
+(** They have points at most w apart; less than w, if [strict]. *)
+Definition near (w : Q) (strict : bool) (vs us : list point) : Prop :=
+  exists p q, hull vs p /\ hull us q /\
+    let square := (x p - x q) * (x p - x q) + (y p - y q) * (y p - y q) + (z p - z q) * (z p - z q) in
+    if strict then square < w * w else square <= w * w.
+(** They meet after the second is moved by some positive multiple of t. *)
+Definition meet_along (t : point) (vs us : list point) : Prop :=
+  exists k, 0 < k /\ meet_moved (Triple (k * x t) (k * y t) (k * z t)) vs us.
 
 (** * Two meshes in their poses *)
 
@@ -75,17 +82,24 @@ Definition faces_cross := some_parts cross.
 
 (** * The claim of a certificate *)
 
-Inductive relation := Apart | Touching | Crossing.
+(** What counts as a contact. If [Along t] has none, B moved by any positive multiple of t does not meet A. *)
+Inductive criterion := Meeting | CrossingOnly | Within (w : number) | Below (w : number) | Along (t : triple number).
+Definition counts_as_contact (k : criterion) : list point -> list point -> Prop :=
+  match k with
+  | Meeting => meet | CrossingOnly => cross
+  | Within w => near (value w) false | Below w => near (value w) true
+  | Along t => meet_along (Triple (value (x t)) (value (y t)) (value (z t)))
+  end.
 
+Inductive relation := Apart | Touching | Crossing.
 Record contact := Contact { face_a : Z; face_b : Z; told : option relation }.
 Record claim := Claim {
   all : bool;                         (* the contacts are all there are *)
-  only_crossing : bool;               (* only faces that cross count as contacts *)
+  counted : criterion;
   relation_of_meshes : option relation;
   contacts : list contact }.
 
-Definition is_contact (c : claim) (s : scene) (i j : Z) : Prop :=
-  if only_crossing c then faces_cross s i j else faces_meet s i j.
+Definition is_contact (c : claim) := some_parts (counts_as_contact (counted c)).
 
 Definition contact_holds (c : claim) (s : scene) (k : contact) : Prop :=
   is_contact c s (face_a k) (face_b k) /\
