@@ -2,11 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compares the proved checker with check.py and `cchip check`: certificates of random small meshes and changed ones.
 
-    campaign.py CHECKED CCHIP N [EVERY]
+    campaign.py CHECKED CCHIP N [EVERY [SECONDS]]
 
-CHECKED: the program cchip-checked; CCHIP: the command cchip. N certificates are made, and each is changed once. Every
-EVERY-th case (100) also goes to `cchip check`, which is a process for each. CCHIP_SEED repeats a run."""
+CHECKED: the program cchip-checked; CCHIP: the command cchip. N certificates of contacts and distances are made, and
+each is changed once, some to claims of `below` and of translations; the last line counts the accepted ones of each
+kind. Every EVERY-th case (100) also goes to `cchip check`, which is a process for each. After SECONDS it ends with what
+it has reached. CCHIP_SEED repeats a run."""
 import json
+import math
 import os
 import pathlib
 import random
@@ -14,6 +17,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "lib/python/src/collisionchip"))
 import check  # noqa: E402
@@ -66,13 +70,16 @@ def change_value(rng, value):
     if isinstance(value, int):
         return rng.choice([value + 1, value - 1, 0, -value, float(value), str(value), True, 2**32, 2**64,
                            [value, value], [value, value + 1]])
+    if isinstance(value, float):
+        return rng.choice([math.nextafter(value, math.inf), math.nextafter(value, 0), 2 * value, value / 2, -value,
+                           0.0, -0.0, math.inf, 5e-324, 2**70 + 1, int(value), repr(value), None, [value]])
     if isinstance(value, str):
         if value.lstrip("-").isdigit():
             n = int(value)
             return rng.choice([str(n + 1), str(n - 1), str(-n), str(2 * n), "0", "1", "-0", "0" + value, "+" + value,
                                value + "0", " " + value, n])
-        words = ["apart", "touching", "crossing", "split_a", "split_b", "separated", "meet", "touch", "cross", "a1",
-                 "a2", "a3", "b1", "b2", "b3", "a0", ""]
+        words = ["apart", "touching", "crossing", "split_a", "split_b", "separated", "meet", "touch", "cross", "near",
+                 "a1", "a2", "a3", "b1", "b2", "b3", "a0", ""]
         return rng.choice([*words, value.upper(), None])
     if isinstance(value, list):
         value, kind = list(value), rng.randrange(6)
@@ -149,6 +156,46 @@ def retell(rng, lines):
     return [json.dumps(line, separators=(",", ":")) for line in [claim, *cells]]
 
 
+def measure_otherwise(rng, lines):
+    """The claim with another distance, with `below` in the place of `within`, or about a translation."""
+    claim, cells = json.loads(lines[0]), [json.loads(line) for line in lines[1:]]
+    distance = claim.pop("within", None)
+    if distance is None and rng.random() < 0.8 or rng.random() < (0.1 if claim["contacts"] else 0.4):
+        directions = [[int(x) for x in cell["direction"]] for cell in cells if "direction" in cell]
+        along = [rng.choice([-1.0, 0.0, 0.0, 1.0, rng.uniform(-1, 1)]) for _ in range(3)]
+        for d in rng.choices(directions, k=2) if directions else []:
+            along = [x + y / (max(map(abs, d)) or 1) for x, y in zip(along, d)]
+        claim.update(along=along, contacts=[], relation=None)
+        cells = [{"cell": "separated", "direction": cell["direction"]} if cell["cell"] == "touch" else cell
+                 for cell in cells]
+        if rng.random() < 0.8:
+            claim["least"] = "touching"
+    else:
+        kind = rng.randrange(4) if distance else 0
+        claim["below" if kind else "within"] = change_value(rng, distance) if kind == 1 else distance or 1.0
+    if "within" in claim or rng.random() < 0.95:
+        claim["collisionchip_certificate"] = rng.choice([2] * 20 + [1])
+    return [json.dumps(line, separators=(",", ":")) for line in [claim, *cells]]
+
+
+def move_near(rng, lines):
+    """Other weights of the points of a cell `near`, or another distance."""
+    claim, cells = json.loads(lines[0]), [json.loads(line) for line in lines[1:]]
+    points = [cell for cell in cells if cell["cell"] == "near"]
+    key = "within" if "within" in claim else "below"
+    if points and rng.random() < 0.6:
+        cell, side = rng.choice(points), rng.choice("ab")
+        n = rng.randrange(len(cell[side]))
+        weight = int(cell[side][n])
+        cell[side][n] = str(rng.choice([weight + 1, weight - 1, 2 * weight, 0, weight * 10**6 + 1, -weight]))
+    elif key in claim:
+        claim[key] = change_value(rng, claim[key])
+    else:
+        claim[rng.choice(["within", "below", "along"])] = rng.choice([1.0, None, [1.0, 0.0, 0.0]])
+        claim["collisionchip_certificate"] = rng.choice([1, 2])
+    return [json.dumps(line, separators=(",", ":")) for line in [claim, *cells]]
+
+
 def with_hashes(lines, meshes, poses):
     """The certificate as one of other meshes or poses: the hashes fit, the proofs mostly do not."""
     claim = json.loads(lines[0])
@@ -158,25 +205,30 @@ def with_hashes(lines, meshes, poses):
 
 
 def accepted_by_python(data, meshes, poses):
+    """The claim of the last certificate, or None."""
     try:
-        certificates = check.split(data.decode())
-        for lines in certificates:
-            check.check(meshes, poses, lines)
-        return bool(certificates)
+        claim = None
+        for lines in check.split(data.decode()):
+            claim = check.check(meshes, poses, lines)
+        return claim
     except (check.Refused, UnicodeDecodeError):
-        return False
+        return None
 
 
 class Campaign:
     def __init__(self, checked, cchip, every, folder):
         self.checked, self.cchip, self.every, self.folder = checked, cchip, every, folder
         self.cases = []
-        self.counts = dict.fromkeys(["certificates", "changed", "accepted", "refused", "cchip", "differences"], 0)
+        self.counts = dict.fromkeys(["certificates", "changed", "accepted", "within", "below", "along",
+                                     "refused", "cchip", "differences"], 0)
 
     def add(self, names, meshes, pose, data, changed):
         path = self.folder / f"{len(self.cases)}.jsonl"
         path.write_bytes(data)
-        self.cases.append((names, pose, path, changed, accepted_by_python(data, meshes, IDENTITY + pose)))
+        claim = accepted_by_python(data, meshes, IDENTITY + pose)
+        self.cases.append((names, pose, path, changed, claim is not None))
+        for key in {"within", "below", "along"} & (claim or {}).keys():
+            self.counts[key] += 1
         self.counts["changed" if changed else "certificates"] += 1
 
     def compare(self):
@@ -206,14 +258,14 @@ class Campaign:
         self.cases = []
 
 
-def main(checked, cchip, count, every="100"):
+def main(checked, cchip, count, every="100", seconds="inf"):
     seed = int(os.environ.get("CCHIP_SEED", random.randrange(2**32)))
     print(f"CCHIP_SEED={seed}", flush=True)
-    rng, count = random.Random(seed), int(count)
+    rng, count, end = random.Random(seed), int(count), time.monotonic() + float(seconds)
     with tempfile.TemporaryDirectory(dir="/dev/shm" if os.path.isdir("/dev/shm") else None) as folder:
         folder = pathlib.Path(folder)
         campaign, pair = Campaign(checked, cchip, int(every), folder), 0
-        while campaign.counts["certificates"] < count:
+        while campaign.counts["certificates"] < count and time.monotonic() < end:
             pair += 1
             names = [folder / f"{pair}a.off", folder / f"{pair}b.off"]
             meshes = [random_mesh(rng), random_mesh(rng)]
@@ -223,8 +275,9 @@ def main(checked, cchip, count, every="100"):
             poses = [random_pose(rng, scale / 2) for _ in range(min(20, count - campaign.counts["certificates"]))]
             rows = [",".join(COLUMNS), *(",".join(map(repr, p)) for p in poses)]
             (folder / "poses.csv").write_text("\n".join(rows) + "\n")
+            distance = scale * (rng.choice([0.5, 1, 1.5, 2, 3]) if rng.random() < 0.6 else 3 * rng.random())
             options = ["--contacts", rng.choice(["first", "all"]),
-                       *rng.choice([[], ["--relation"], ["--counts", "crossing"]])]
+                       *rng.choice([[], ["--relation"], ["--counts", "crossing"], *[["--within", repr(distance)]] * 3])]
             command = [cchip, "collide", *names, "--poses", folder / "poses.csv", *options,
                        "--certificate", folder / "made"]
             run = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
@@ -235,10 +288,14 @@ def main(checked, cchip, count, every="100"):
             certificates = check.split((folder / "made").read_text())
             for pose, lines in zip(poses, certificates):
                 campaign.add(names, meshes, pose, ("\n".join(lines) + "\n").encode(), False)
-                kind = rng.random()
-                if kind < 0.2:
+                kind, within = rng.random(), "--within" in options
+                if within and kind < 0.25:
+                    data = ("\n".join(move_near(rng, lines)) + "\n").encode()
+                elif kind < (0.5 if within else 0.1):
+                    data = ("\n".join(measure_otherwise(rng, lines)) + "\n").encode()
+                elif kind < (0.55 if within else 0.25):
                     data = ("\n".join(retell(rng, lines)) + "\n").encode()
-                elif kind < 0.35:
+                elif kind < (0.65 if within else 0.4):
                     pose = rng.choice(poses)
                     data = ("\n".join(with_hashes(lines, meshes, IDENTITY + pose)) + "\n").encode()
                 else:
@@ -252,6 +309,6 @@ def main(checked, cchip, count, every="100"):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) not in (4, 5):
+    if len(sys.argv) not in (4, 5, 6):
         sys.exit("usage:" + __doc__)
     main(*sys.argv[1:])

@@ -186,7 +186,8 @@ Proof.
     try discriminate; nia.
 Qed.
 
-Lemma gap_far w strict d ps qs : separates (Distance w strict) d ps qs = true -> forall ps' qs', incl ps' ps -> incl qs' qs ->
+Lemma gap_far w strict d ps qs : separates (Distance w strict) d ps qs = true -> forall ps' qs',
+  incl ps' ps -> incl qs' qs ->
   ~ near (inject_Z w) strict (map rational ps') (map rational qs').
 Proof.
   intros H ps' qs' Ip Iq (p & q & Hp & Hq & Near). cbn [separates] in H.
@@ -335,7 +336,8 @@ Proof.
   set (dz := (weighted_z wa (map z pa) * sum_z wb - weighted_z wb (map z pb) * sum_z wa)%Z) in *.
   assert (0 < ta * tb) as P by nra. set (t := ta * tb) in *.
   assert (0 < t * t) as Pt by nra.
-  assert (inject_Z dx / t * (inject_Z dx / t) + inject_Z dy / t * (inject_Z dy / t) + inject_Z dz / t * (inject_Z dz / t)
+  assert (inject_Z dx / t * (inject_Z dx / t) + inject_Z dy / t * (inject_Z dy / t)
+            + inject_Z dz / t * (inject_Z dz / t)
           == inject_Z (dot (Triple dx dy dz) (Triple dx dy dz)) / (t * t)) as Square.
   { unfold dot; cbn [x y z]. rewrite !inject_Z_plus, !inject_Z_mult. field. lra. }
   assert (inject_Z (w * sum_z wa * sum_z wb * (w * sum_z wa * sum_z wb)) == inject_Z w * inject_Z w * (t * t)) as M.
@@ -506,7 +508,8 @@ Lemma reason_sound m why wa wb pa pb : reason_holds m why wa wb pa pb = true ->
   | Cross _ _ _ => cross (map rational pa) (map rational pb)
   end.
 Proof.
-  intros H. destruct m as [| w strict |], why as [| | d | e1 e2 e3]; cbn in H; try discriminate; rewrite !andb_true_iff in H.
+  intros H. destruct m as [| w strict |], why as [| | d | e1 e2 e3]; cbn in H; try discriminate;
+    rewrite !andb_true_iff in H.
   - split; auto. apply (same_point_meet wa wb); tauto.
   - assert (meet (map rational pa) (map rational pb)) by (apply (same_point_meet wa wb); tauto).
     split; auto. split; auto. intros eps P. apply (below_parts d); tauto.

@@ -28,15 +28,16 @@ let in_words read =
   let c = read.certificate.claimed in
   let relation : Checked.relation option -> string = function
     | None -> "" | Some Apart -> ", apart" | Some Touching -> ", touching" | Some Crossing -> ", crossing" in
-  let number = to_text in
   let faces_are, what = match c.counted with
     | Meeting -> ("meets", "")
     | CrossingOnly -> ("crosses", " of faces that cross")
-    | Within w -> ("is within " ^ number w ^ " of", " within " ^ number w)
-    | Below w -> ("is nearer than " ^ number w ^ " to", " below " ^ number w)
-    | Along t -> ("meets", Printf.sprintf " after any move of B along (%s, %s, %s)" (number t.x) (number t.y) (number t.z0)) in
+    | Within w -> ("is within " ^ to_text w ^ " of", " within " ^ to_text w)
+    | Below w -> ("is nearer than " ^ to_text w ^ " to", " below " ^ to_text w)
+    | Along t ->
+      ("meets", Printf.sprintf " after any move of B along (%s, %s, %s)" (to_text t.x) (to_text t.y) (to_text t.z0)) in
   let contacts = match c.all, c.contacts with
-    | false, k :: _ -> Printf.sprintf "face %s of A %s face %s of B" (Z.to_string k.face_a) faces_are (Z.to_string k.face_b)
+    | false, k :: _ ->
+      Printf.sprintf "face %s of A %s face %s of B" (Z.to_string k.face_a) faces_are (Z.to_string k.face_b)
     | _, [] -> "no contacts" ^ what
     | _, l -> let n = List.length l in Printf.sprintf "%d contact%s%s and no others" n (if n = 1 then "" else "s") what in
   contacts ^ relation c.relation_of_meshes

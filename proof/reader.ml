@@ -232,7 +232,8 @@ let poses_of_csv path =
 (* Certificates. *)
 
 (* fault: why the certificate is refused, though it can be read *)
-type certificate_read = { certificate : certificate; mesh_hashes : string * string; poses_hash : string; fault : string option }
+type certificate_read =
+  { certificate : certificate; mesh_hashes : string * string; poses_hash : string; fault : string option }
 
 let malformed what = raise (Json.Malformed what)
 let get fields key = match Json.find key fields with Some value -> value | None -> malformed ("no key " ^ key)

@@ -129,8 +129,8 @@ Section Similar.
   Lemma near_similar w w' strict : w' == s * w -> near w' strict Xs Ys <-> near w strict ps qs.
   Proof.
     intros W. unfold near; cbv zeta. split; intros (p & q & Hp & Hq & H).
-    - exists (times (/ s) p), (times (/ s) q). split; [eapply hull_divided; eauto |]. split; [eapply hull_divided; eauto |].
-      cbn. assert (0 < / s) as I by now apply Qinv_lt_0_compat. set (i := / s) in *.
+    - exists (times (/ s) p), (times (/ s) q). split; [eapply hull_divided; eauto |].
+      split; [eapply hull_divided; eauto |]. cbn. assert (0 < / s) as I by now apply Qinv_lt_0_compat. set (i := / s) in *.
       assert (w == i * w') as E by (rewrite W; unfold i; field; lra).
       assert (0 < i * i) as Pi by nra.
       set (square := (x p - x q) * (x p - x q) + (y p - y q) * (y p - y q) + (z p - z q) * (z p - z q)) in *.
@@ -461,13 +461,15 @@ Section Claim.
   Proof. unfold claim_follows in follows. rewrite !andb_true_iff in follows. tauto. Qed.
 
   (** Faces that are related have a pair, and if they meet it tells whether they cross, if all is told. *)
-  Lemma met_found i j : all c = true -> some_parts (base (counted c)) s i j -> exists g, In g gs /\ pair_a g = i /\ pair_b g = j.
+  Lemma met_found i j : all c = true -> some_parts (base (counted c)) s i j ->
+    exists g, In g gs /\ pair_a g = i /\ pair_b g = j.
   Proof.
     intros All (f & g & F & G & <- & <- & M). destruct (all_decided All f g F G) as [A | (e & I & T)]; [now elim A |].
     destruct (proj1 (pairs_of_spec found) e I) as (h & J & Ka & Kb & _). destruct T as (Ta & Tb & _).
     exists h. now rewrite Ka, Kb, Ta, Tb.
   Qed.
-  Lemma crossing_found i j : about_meeting c = true -> all c = true -> faces_cross s i j -> exists g, In g gs /\ pair_a g = i /\ pair_b g = j /\
+  Lemma crossing_found i j : about_meeting c = true -> all c = true -> faces_cross s i j ->
+    exists g, In g gs /\ pair_a g = i /\ pair_b g = j /\
     (crosses g = true \/ meets_only g = true).
   Proof.
     intros B All (f & g & F & G & <- & <- & X). destruct (all_decided All f g F G) as [A | (e & I & T)].

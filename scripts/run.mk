@@ -20,11 +20,11 @@ QUAD_LEAVES ?= build/leaves/BLEND/Suzanne_248.blend.obj
 # more options of campaign-leaves, as --eta 2
 LEAF_ARGS ?=
 
-.PHONY: list release docs-layout peers robots sim-reconfig sim-fabric sim-traverse wave-of formal-all mutants probes test-gates test-debug test-asan test-arm64 cross-windows fuzz-tools fuzz campaign-build campaign campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-cluster campaign-chip campaign-chip-faults campaign-chip-swaps proof proof-campaign picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot coverage coverage-bins coverage-cpp bench-certificate bench-scene sdist test-sdist bench-python test-dask test-ply bench-chip fpga fpga-sweep fpga-quick asic asic-quick tidy deb
+.PHONY: list release docs-layout peers robots sim-reconfig sim-fabric sim-traverse wave-of formal-all mutants probes test-gates test-debug test-asan test-arm64 cross-windows fuzz-tools fuzz campaign-build campaign campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-cluster campaign-chip campaign-chip-faults campaign-chip-swaps proof proof-campaign proof-of-chip picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot coverage coverage-bins coverage-cpp bench-certificate bench-scene sdist test-sdist bench-python test-dask test-ply bench-chip fpga fpga-sweep fpga-quick asic asic-quick tidy deb
 
 define RUN_GROUPS
 Try it
-  sim-reconfig/18_s sim-fabric sim-traverse table1/1_s table1-plot picture
+  sim-reconfig/18_s sim-fabric sim-traverse proof-of-chip/1_s table1/1_s table1-plot picture
 Use the library
   deb sdist release
 Read
@@ -301,6 +301,19 @@ CERTIFICATES ?= 100000
 proof-campaign: proof $(RELEASE)/build.ninja ## CERTIFICATES certificates and as many changed ones: the proved checker, check.py and cchip check accept the same (CCHIP_SEED repeats a run)
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip
 	proof/campaign.py build/proof/cchip-checked $(RELEASE)/bin/cchip $(CERTIFICATES) 100
+
+# as in: scripts/run proof-of-chip A=gear.off B=ring.off POSE=0.1,0,0 CHIP_ARGS="--contacts first"
+A ?= $(MODELS)/OFF/Cube.off
+B ?= $(A)
+POSE ?= 1,0.75,0.75
+CHIP_ARGS ?=
+proof-of-chip: ## the simulated chip answers whether meshes A and B touch, B moved by POSE, and the proved checker says whether that is true (builds nothing: after make and scripts/run proof)
+	@test -x $(RELEASE)/bin/cchip || { echo "$(RELEASE)/bin/cchip is missing: run make first" >&2; exit 2; }
+	@test -x build/proof/cchip-checked || { echo "build/proof/cchip-checked is missing: run scripts/run proof first" >&2; exit 2; }
+	@echo "the chip, simulated clock by clock:"
+	@$(RELEASE)/bin/cchip collide '$(A)' '$(B)' --pose='$(POSE)' --device sim $(CHIP_ARGS) --certificate build/proof/of_chip.jsonl
+	@echo "the checker that is proved in Coq:"
+	@build/proof/cchip-checked '$(A)' '$(B)' build/proof/of_chip.jsonl --pose='$(POSE)'
 
 bench-certificate: $(RELEASE)/build.ninja ## certificates of answers for pairs of large meshes: all checked, their sizes and times; BENCH_ARGS="--poses 200" for more
 	cmake --build $(RELEASE) -j $(JOBS) --target bench_certificate
