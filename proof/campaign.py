@@ -8,6 +8,7 @@ CHECKED: the program cchip-checked; CCHIP: the command cchip. N certificates of 
 each is changed once, some to claims of `below` and of translations; the last line counts the accepted ones of each
 kind. Every EVERY-th case (100) also goes to `cchip check`, which is a process for each. After SECONDS it ends with what
 it has reached. CCHIP_SEED repeats a run."""
+import fractions
 import json
 import math
 import os
@@ -26,17 +27,21 @@ IDENTITY = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]
 COLUMNS = ["r00", "r01", "r02", "tx", "r10", "r11", "r12", "ty", "r20", "r21", "r22", "tz"]
 
 
-def random_mesh(rng):
-    """Vertices and faces: triangles, parallelograms, warped quads and degenerate ones, on a coarse grid or not."""
-    step = rng.choice([1.0, 0.5, 2.0**-20, 1e-3, 2.0**60])
+def random_mesh(rng, parallel):
+    """Vertices and faces: triangles, parallelograms, warped quads and degenerate ones, on a coarse grid or not; or on
+    the grid and parallel to the axes."""
+    step = rng.choice([1.0, 0.5] if parallel else [1.0, 0.5, 2.0**-20, 1e-3, 2.0**60])
     grid = lambda n: step * rng.randint(-n, n) if rng.random() < 0.9 else step * rng.uniform(-n, n)
     vertices, faces = [], []
     for _ in range(rng.randint(1, 7)):
         first = len(vertices)
         p, u, v = ([grid(n) for _ in range(3)] for n in (3, 2, 2))
+        if parallel:
+            p, axes = [step * rng.randint(-3, 3) for _ in range(3)], rng.sample(range(3), 2)
+            u, v = ([step * rng.choice([-2, -1, 1, 2]) * (i == axis) for i in range(3)] for axis in axes)
         corners = [p, [a + b for a, b in zip(p, u)], [a + b + c for a, b, c in zip(p, u, v)],
                    [a + c for a, c in zip(p, v)]]
-        if rng.random() < 0.2:
+        if not parallel and rng.random() < 0.2:
             corners[rng.randrange(4)][rng.randrange(3)] += grid(1)
         if rng.random() < 0.5:
             corners.pop()
@@ -161,8 +166,9 @@ def measure_otherwise(rng, lines):
     claim, cells = json.loads(lines[0]), [json.loads(line) for line in lines[1:]]
     distance = claim.pop("within", None)
     if distance is None and rng.random() < 0.8 or rng.random() < (0.1 if claim["contacts"] else 0.4):
-        directions = [[int(x) for x in cell["direction"]] for cell in cells if "direction" in cell]
-        along = [rng.choice([-1.0, 0.0, 0.0, 1.0, rng.uniform(-1, 1)]) for _ in range(3)]
+        kinds = {"touch"} if rng.random() < 0.7 and any(c["cell"] == "touch" for c in cells) else {"touch", "separated"}
+        directions = [[int(x) for x in cell["direction"]] for cell in cells if cell["cell"] in kinds]
+        along = [0.0 if len(kinds) == 1 else rng.choice([-1.0, 0.0, 0.0, 1.0, rng.uniform(-1, 1)]) for _ in range(3)]
         for d in rng.choices(directions, k=2) if directions else []:
             along = [x + y / (max(map(abs, d)) or 1) for x, y in zip(along, d)]
         claim.update(along=along, contacts=[], relation=None)
@@ -175,6 +181,33 @@ def measure_otherwise(rng, lines):
         claim["below" if kind else "within"] = change_value(rng, distance) if kind == 1 else distance or 1.0
     if "within" in claim or rng.random() < 0.95:
         claim["collisionchip_certificate"] = rng.choice([2] * 20 + [1])
+    return [json.dumps(line, separators=(",", ":")) for line in [claim, *cells]]
+
+
+def part_near(rng, lines, meshes, poses):
+    """Separated in the place of near: all points that are w apart, or of one cell. With `below` it may be true."""
+    claim, cells = json.loads(lines[0]), [json.loads(line) for line in lines[1:]]
+    if "within" not in claim or not claim["all"]:
+        return move_near(rng, lines)
+    corners = [check.placed(m[0], p) for m, p in zip(meshes, (poses[:12], poses[12:]))]
+    square = fractions.Fraction(claim["within"])**2
+    near = [cell for cell in cells if cell["cell"] == "near"]
+    one = rng.choice(near) if near and rng.random() < 0.2 else None
+    for cell in near:
+        points = []
+        for side, weights in enumerate((cell["a"], cell["b"])):
+            weights = [fractions.Fraction(int(w)) for w in weights]
+            vertices = [corners[side][v] for v in meshes[side][1][cell["faces"][side]]]
+            points.append([check.dot(weights, axis) / sum(weights) for axis in zip(*vertices)])
+        way = [q - p for p, q in zip(*points)]
+        if cell is one or check.dot(way, way) == square:
+            claim["contacts"] = [k for k in claim["contacts"] if k[:2] != cell["faces"]]
+            common = math.lcm(*(x.denominator for x in way))
+            whole = [int(x * common) for x in way]
+            cell.clear()
+            cell.update(cell="separated", direction=[str(x // (math.gcd(*whole) or 1)) for x in whole])
+    if rng.random() < 0.5:
+        claim["below"] = claim.pop("within")
     return [json.dumps(line, separators=(",", ":")) for line in [claim, *cells]]
 
 
@@ -268,7 +301,8 @@ def main(checked, cchip, count, every="100", seconds="inf"):
         while campaign.counts["certificates"] < count and time.monotonic() < end:
             pair += 1
             names = [folder / f"{pair}a.off", folder / f"{pair}b.off"]
-            meshes = [random_mesh(rng), random_mesh(rng)]
+            parallel = rng.random() < 0.3
+            meshes = [random_mesh(rng, parallel), random_mesh(rng, parallel)]
             for name, mesh in zip(names, meshes):
                 write_off(name, mesh)
             scale = rng.choice([abs(x) or 1.0 for x in meshes[0][0][0]])
@@ -289,11 +323,13 @@ def main(checked, cchip, count, every="100", seconds="inf"):
             for pose, lines in zip(poses, certificates):
                 campaign.add(names, meshes, pose, ("\n".join(lines) + "\n").encode(), False)
                 kind, within = rng.random(), "--within" in options
-                if within and kind < 0.25:
+                if within and kind < 0.15:
+                    data = ("\n".join(part_near(rng, lines, meshes, IDENTITY + pose)) + "\n").encode()
+                elif within and kind < 0.25:
                     data = ("\n".join(move_near(rng, lines)) + "\n").encode()
-                elif kind < (0.5 if within else 0.1):
+                elif kind < (0.4 if within else 0.2):
                     data = ("\n".join(measure_otherwise(rng, lines)) + "\n").encode()
-                elif kind < (0.55 if within else 0.25):
+                elif kind < (0.5 if within else 0.3):
                     data = ("\n".join(retell(rng, lines)) + "\n").encode()
                 elif kind < (0.65 if within else 0.4):
                     pose = rng.choice(poses)
