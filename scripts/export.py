@@ -2,20 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes folders to hand to an FPGA project: one self-contained Verilog file per top module and all that goes with it.
 
-usage: export.py [--out FOLDER] [--programs FOLDER] [--pairs N] [--seed N] [--mhz F] [TOP...]
-  --out FOLDER       default build/export; FOLDER/TOP is deleted and written anew
-  --programs FOLDER  of cchip_pair_vectors and cchip_query_vectors, default build/release/bin
-  --pairs N          vectors of the bench of a primitive test, default 2000
-  --seed N           of the vectors, default 1
-  --mhz F            clock of the constraint templates, default: what docs/hardware/fpga.md measured on ECP5, rounded
-                     down
-  TOP                default: every primitive test of rtl/cchip.f, the array, the reconfigurable
-                     subsystem, the blank module and the whole chip
+usage: export.py [--out FOLDER] [--mhz F] [TOP...]
+  --out FOLDER  default build/export; FOLDER/TOP is deleted and written anew
+  --mhz F       clock of the constraint templates, default: what docs/hardware/fpga.md measured on ECP5, rounded down
+  TOP           default: every primitive test of rtl/cchip.f, the array, the reconfigurable
+                subsystem, the blank module and the whole chip
 
 FOLDER/TOP holds TOP.v, whose ports have Vivado's interface attributes, with every list rtl/cchip_DEVICE.f a variant
-TOP_DEVICE.v with the multiplier leaf of that device, file lists, constraints, datasheets, licences, vectors, a
-self-checking bench, TOP.vhd for VHDL, README.md and, of the chip after `make venv`, its IP-XACT component. Modules are
-found by name: one module per file, named like it. Exit codes: 0 done, 1 something is missing."""
+TOP_DEVICE.v with the multiplier leaf of that device, file lists, constraints, datasheets, licences, a self-checking
+bench with its vectors, TOP.vhd for VHDL, README.md and, of the chip after `make venv`, its IP-XACT component. The
+vectors are those of tests/fusesoc: nothing has to be built. Modules are found by name: one module per file, named like
+it. Exit codes: 0 done, 1 something is missing."""
 import argparse
 import csv
 import os
@@ -40,6 +37,7 @@ CHIP = "cchip_chip"
 KINDS = {"cchip_primtest_tri_tri": "tri_tri", "cchip_primtest_tri_quad": "tri_quad",
          "cchip_primtest_quad_quad": "quad_quad", "cchip_primtest_array": "tri_tri",
          SUBSYSTEM: "tri_tri"}
+VECTORS = ROOT / "tests" / "fusesoc"  # what the bit-exact model expects; test_fusesoc.py compares them with it
 # Simulation models of the blocks that the leaves of a device instantiate, and what the blocks are.
 CELLS = {"_ecp5": {"MULT18X18D": "multiplier block", "DP16KD": "block RAM"}}
 # Pages below docs/: of every top, and of some.
@@ -204,6 +202,11 @@ create_clock -name clk -period {period} [get_ports clk]
 # ---- pages
 
 
+def vectors(top):
+    """The file of pairs for the bench of a top."""
+    return VECTORS / f"vectors_{KINDS[top]}.hex"
+
+
 def page(path, text, exported):
     """A page of docs/ with that text; links to what is not exported, and pictures, become text. `exported`: names of
     pages below docs/. A link to the RTL of a module leads to its datasheet."""
@@ -237,7 +240,7 @@ def blocks(suffix, text):
     return [name for name in CELLS.get(suffix, {}) if re.search(rf"\b{name}\b *#", without_comments(text))]
 
 
-def readme(top, files, pairs, mhz, described):
+def readme(top, files, mhz, described):
     def variant(suffix, text):
         cells = blocks(suffix, text)
         if not cells:
@@ -255,7 +258,7 @@ def readme(top, files, pairs, mhz, described):
         run += " +memory=memory.hex +records=records.hex"
         verdict = "`wrong=0` in its last line"
     elif top != BLANK:
-        run += f" +vectors=vectors.hex +pairs={pairs}"
+        run += f" +vectors=vectors.hex +pairs={len(vectors(top).read_text().splitlines())}"
         macro = f"-DCCHIP_BENCH_TOP={'bench_subsystem' if top == SUBSYSTEM else top} "
         wrapper = "bench_subsystem.v " if top == SUBSYSTEM else ""
     compiled = f"iverilog -g2005 {macro}-s {bench} -o bench.vvp {bench}.v {wrapper}{top}.v"
@@ -305,16 +308,6 @@ def chip_notes(mhz):
 # ---- all of it
 
 
-def write_vectors(program, *arguments):
-    try:
-        result = subprocess.run([program, *map(str, arguments)], stdout=subprocess.PIPE,
-                                stderr=subprocess.STDOUT, text=True)
-    except OSError:
-        raise ExportError(f"{program} is missing: make export builds it") from None
-    if result.returncode:
-        raise ExportError(result.stdout.strip())
-
-
 def write_ip_xact(folder):
     """The component of the chip, where the packages of `make venv` are; returns whether."""
     result = subprocess.run([sys.executable, "-B", ROOT / "scripts" / "ip_xact.py", folder], stdout=subprocess.PIPE,
@@ -347,13 +340,13 @@ def export(top, options):
     shutil.copytree(ROOT / "LICENSES", folder / "LICENSES")
     for name in FILES.get(top, (BENCH,)):
         shutil.copy(ROOT / name, folder)
-    programs = pathlib.Path(options.programs)
     if top == CHIP:
-        write_vectors(programs / "cchip_query_vectors", folder / "memory.hex", folder / "records.hex")
+        for name in ("memory", "records"):
+            shutil.copy(VECTORS / f"{name}_chip.hex", folder / f"{name}.hex")
     elif top != BLANK:
-        write_vectors(programs / "cchip_pair_vectors", KINDS[top], folder / "vectors.hex", options.pairs, options.seed)
+        shutil.copy(vectors(top), folder / "vectors.hex")
     described = top == CHIP and write_ip_xact(folder)
-    (folder / "README.md").write_text(readme(top, files, options.pairs, mhz, described))
+    (folder / "README.md").write_text(readme(top, files, mhz, described))
     print(f"wrote {os.path.relpath(folder)}")
 
 
@@ -365,9 +358,6 @@ def main():
         return 0
     parser = argparse.ArgumentParser(usage=re.search("usage: (.*)", __doc__).group(1), add_help=False)
     parser.add_argument("--out", default=ROOT / "build" / "export")
-    parser.add_argument("--programs", default=ROOT / "build" / "release" / "bin")
-    parser.add_argument("--pairs", default=2000, type=int)
-    parser.add_argument("--seed", default=1, type=int)
     parser.add_argument("--mhz", type=float)
     parser.add_argument("tops", nargs="*")
     options = parser.parse_args()

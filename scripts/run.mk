@@ -20,7 +20,7 @@ QUAD_LEAVES ?= build/leaves/BLEND/Suzanne_248.blend.obj
 # more options of campaign-leaves, as --eta 2
 LEAF_ARGS ?=
 
-.PHONY: list release docs-layout peers robots sim-reconfig sim-fabric sim-traverse wave-of formal-all mutants probes test-gates test-debug test-asan test-arm64 cross-windows fuzz-tools fuzz campaign-build campaign campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-cluster campaign-chip campaign-chip-faults campaign-chip-swaps proof proof-campaign proof-of-chip picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot coverage coverage-bins coverage-cpp bench-certificate bench-scene sdist test-sdist bench-python test-dask test-ply bench-chip fpga fpga-sweep fpga-quick asic asic-quick tidy deb
+.PHONY: list release docs-layout peers robots sim-reconfig sim-fabric sim-traverse wave-of formal-all mutants probes test-gates test-export test-debug test-asan test-arm64 cross-windows fuzz-tools fuzz campaign-build campaign campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-cluster campaign-chip campaign-chip-faults campaign-chip-swaps proof proof-campaign proof-of-chip picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot coverage coverage-bins coverage-cpp bench-certificate bench-scene sdist test-sdist bench-python test-dask test-ply bench-chip fpga fpga-sweep fpga-quick asic asic-quick tidy deb
 
 define RUN_GROUPS
 Try it
@@ -30,7 +30,7 @@ Use the library
 Read
   docs-layout/3_min
 Check a change
-  proof probes wave-of test-sdist test-dask test-ply test-debug test-asan test-arm64 cross-windows test-gates fuzz tidy
+  proof probes wave-of test-sdist test-dask test-ply test-debug test-asan test-arm64 cross-windows test-gates test-export fuzz tidy
 Check for long
   formal-all/hours mutants/hours coverage/hours coverage-bins coverage-cpp
   campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-collide campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
@@ -103,6 +103,10 @@ test-gates: $(RELEASE)/build.ninja ## netlists for Lattice ECP5 and Xilinx 7: pr
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip_pair_vectors
 	tests/gates/gates.py prove --jobs $(JOBS)
 	tests/gates/gates.py simulate --vectors $(RELEASE)/bin/cchip_pair_vectors --jobs $(JOBS)
+
+EXPORTED ?= $(addprefix cchip_,primtest_tri_tri primtest_tri_quad primtest_quad_quad primtest_array primtest_subsystem primtest_blank chip)
+test-export: ## each of the EXPORTED folders alone in Verilator, Icarus and Yosys, and its bench, which must fail on a fault; no C++ is built
+	for top in $(EXPORTED); do python3 -B tests/export/test_export.py $$top $(CURDIR)/build/test-export/$$top || exit 1; done
 
 test-debug: build/debug$(OTHER)/build.ninja ## build without optimisation and run the regression
 	cmake --build build/debug$(OTHER) -j $(JOBS)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 `default_nettype none
 // bench_blank: self-checking bench of cchip_primtest_blank: for any input the outputs are its constants.
-// Ends with "PASS clocks=C" or "FAIL ...". Verilog-2005, no package.
+// Ends with "PASS clocks=C" or "FAIL ...", after which Icarus ends with code 1. Verilog-2005, no package.
 module bench_blank;
 
   localparam integer COORD_W = 16;
@@ -49,6 +49,9 @@ module bench_blank;
       end
     end
     if (!failed) $display("PASS clocks=%0d", CLOCKS);
+`ifdef __ICARUS__
+    if (failed) $finish_and_return(1);
+`endif
     $finish;
   end
 

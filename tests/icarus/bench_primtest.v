@@ -10,7 +10,8 @@
 //   +steady          pairs always offered, results always taken, reset at the start only: every pair is answered
 //   +lines=FILE      written, if given: "in CLOCK TAG IDLE" and "out CLOCK TAG HIT GRID DEFINITE AXIS BEATS IDLE" for
 //                    every handshake; twin.cpp writes the same lines with the Verilated RTL on the same clocks
-// Ends with "PASS pairs=N results=R clocks=C" (resets drop the pairs inside, so R may be below N) or "FAIL ...".
+// Ends with "PASS pairs=N results=R clocks=C" (resets drop the pairs inside, so R may be below N) or "FAIL ...", after
+// which Icarus ends with code 1.
 module bench_primtest;
 
   localparam integer COORD_W = 16;
@@ -229,6 +230,9 @@ module bench_primtest;
     end
     if (lines != 0) $fclose(lines);
     if (!failed) $display("PASS pairs=%0d results=%0d clocks=%0d", pairs, results, clock);
+`ifdef __ICARUS__
+    if (failed) $finish_and_return(1);
+`endif
     $finish;
   end
 

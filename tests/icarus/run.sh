@@ -18,7 +18,7 @@ mkdir -p "$folder"
 "$vectors" "$kind" "$folder/vectors.hex" "$pairs" "$seed"
 "$twin" "$folder/vectors.hex" $start "$folder/verilator.txt"
 vvp -n "$bench" +vectors="$folder/vectors.hex" +pairs="$pairs" +start=$start +lines="$folder/icarus.txt" \
-  > "$folder/icarus.log"
+  > "$folder/icarus.log" || { cat "$folder/icarus.log"; exit 1; }
 cat "$folder/icarus.log"
 grep -q "^PASS pairs=$pairs " "$folder/icarus.log"
 
