@@ -6,7 +6,7 @@ usage: export.py [--out FOLDER] [--mhz F] [TOP...]
   --out FOLDER  default build/export; FOLDER/TOP is deleted and written anew
   --mhz F       clock of the constraint templates, default: what docs/hardware/fpga.md measured on ECP5, rounded down
   TOP           default: every primitive test of rtl/cchip.f, the array, the reconfigurable
-                subsystem, the blank module and the whole chip
+                subsystem, the blank module and the whole chip, also with three clocks
 
 FOLDER/TOP holds TOP.v, whose ports have Vivado's interface attributes, with every list rtl/cchip_DEVICE.f a variant
 TOP_DEVICE.v with the multiplier leaf of that device, file lists, constraints, datasheets, licences, a self-checking
@@ -33,6 +33,8 @@ INCLUDES = ("cchip_defs.vh", "cchip_assert.vh")
 BLANK = "cchip_primtest_blank"
 SUBSYSTEM = "cchip_primtest_subsystem"
 CHIP = "cchip_chip"
+CDC = "cchip_chip_cdc"
+CLOCKS = {CDC: ("clk", "axil_clk", "mem_clk")}  # of all others: clk
 # Pairs of the vectors: the default parameters of each top.
 KINDS = {"cchip_primtest_tri_tri": "tri_tri", "cchip_primtest_tri_quad": "tri_quad",
          "cchip_primtest_quad_quad": "quad_quad", "cchip_primtest_array": "tri_tri",
@@ -46,7 +48,7 @@ MORE_PAGES = {SUBSYSTEM: ("hardware/registers.md",),
               CHIP: tuple(f"hardware/{name}.md" for name in ("chip", "chip-registers", "image", "programmers-guide"))}
 # Clock of the constraints: medians of docs/hardware/fpga.md, rounded down; the chip's is that of the triangle test with
 # one seed.
-MHZ = {"cchip_primtest_array": 145, SUBSYSTEM: 130, CHIP: 68}
+MHZ = {"cchip_primtest_array": 145, SUBSYSTEM: 130, CHIP: 68, CDC: 68}
 # Bench of a top, the first of its files, and what else is copied.
 BENCH = "tests/icarus/bench_primtest.v"
 WIRE = "cpp_ref/include/cchip/internal/wire"
@@ -55,6 +57,7 @@ FILES = {BLANK: ("tests/icarus/bench_blank.v",),
          CHIP: ("tests/icarus/bench_chip.v", f"{WIRE}/chip_registers.hpp", "examples/chip_poll.h",
                 "examples/chip_poll.c",
                 "examples/chip_instance.v")}
+FILES[CDC] = ("tests/icarus/bench_chip_cdc.v", *FILES[CHIP][1:-1])
 
 
 class ExportError(Exception):
@@ -78,7 +81,7 @@ def closure(top, files):
     """Modules that `top` needs, itself included, in the order of the list. The chip's slots have three kinds of pairs:
     their region names the test of points, which is never in it."""
     needed, found = [top], set()
-    files = {name: file for name, file in files.items() if top != "cchip_chip" or name != "cchip_primtest_point_tri"}
+    files = {name: file for name, file in files.items() if top not in (CHIP, CDC) or name != "cchip_primtest_point_tri"}
     while needed:
         name = needed.pop()
         if name not in found:
@@ -166,34 +169,43 @@ def variants(top):
 def constraints(top, mhz):
     period = f"{1000 / mhz:.3f}"
     # the device's configuration error comes from any clock, to two flip-flops
-    asynchronous = top in (SUBSYSTEM, CHIP)
+    asynchronous = top in (SUBSYSTEM, CHIP, CDC)
     false_path = "set_false_path -from [get_ports cfg_error]\n" if asynchronous else ""
+    clocks = CLOCKS.get(top, ("clk",))
+    create = "".join(f"create_clock -name {name} -period {period} [get_ports {name}]\n" for name in clocks)
+    frequency = "".join(f'FREQUENCY PORT "{name}" {mhz:g} MHZ;\n' for name in clocks)
+    pins = " ".join(clocks)
+    read_xdc, read_sdc = (f"# The crossings: {how} after this file.\n" if len(clocks) > 1 else ""
+                          for how in ("read_xdc -unmanaged cdc.xdc", "cdc.sdc"))
+    inside = f"[get_ports {{{pins}}}]" if len(clocks) > 1 else "[get_ports clk]"
+    no_clock = " && ".join(f"NAME != {name}" for name in clocks)
     head = f"""# SPDX-License-Identifier: Apache-2.0
 # {top}: template. It constrains the one clock, {mhz:g} MHz: change that to yours.
 # {'All ports but cfg_error' if asynchronous else 'All ports'} belong to this clock, rst included (synchronous). Where the clock comes from your design and is constrained
 # there, leave this file out.
+""" if len(clocks) == 1 else f"""# SPDX-License-Identifier: Apache-2.0
+# {top}: template. It constrains the three clocks, each {mhz:g} MHz: change that to yours. axil_clk: s_axil, irq and
+# axil_rst; mem_clk: m_axi, m_axi_cfg and mem_rst; clk: rst and cfg; cfg_error: none. Where the clocks come from your
+# design and are constrained there, leave this file out, and only this one: the crossings are not in it.
 """  # noqa: E501  lines of what is written
     lpf = head + f"""# Lattice ECP5 (Diamond, nextpnr-ecp5). The ports are more than a package has pins: build the module inside your design,
 # and replace "clk" by the name of the clock there. nextpnr: FREQUENCY PORT for a pin, FREQUENCY NET for a clock of a PLL.
-FREQUENCY PORT "clk" {mhz:g} MHZ;
-# LOCATE COMP "clk" SITE "...";
+{frequency}# LOCATE COMP "clk" SITE "...";
 # IOBUF PORT "clk" IO_TYPE=LVCMOS33;
 """  # noqa: E501  lines of what is written
     xdc = head + f"""# AMD (Vivado), for the module on its own: synth_design -mode out_of_context -top {top}.
-create_clock -name clk -period {period} [get_ports clk]
-{false_path}# A clock buffer of your design, so that timing counts its delay:
+{create}{false_path}{read_xdc}# A clock buffer of your design, so that timing counts its delay:
 # set_property HD.CLK_SRC BUFGCTRL_X0Y0 [get_ports clk]
 # Ports that leave the device (out of context none do): values of your board.
-# set_input_delay -clock clk 0.000 [get_ports -filter {{DIRECTION == IN && NAME != clk}}]
+# set_input_delay -clock clk 0.000 [get_ports -filter {{DIRECTION == IN && {no_clock}}}]
 # set_output_delay -clock clk 0.000 [get_ports -filter {{DIRECTION == OUT}}]
 """
     sdc = head + f"""# Intel (Quartus) and others that read SDC. On its own in Quartus make the ports virtual, they are more than a package has
-# pins: in the .qsf, set_instance_assignment -name VIRTUAL_PIN ON -to *, and OFF for clk.
-create_clock -name clk -period {period} [get_ports clk]
-{false_path}# Quartus only:
-# derive_clock_uncertainty
+# pins: in the .qsf, set_instance_assignment -name VIRTUAL_PIN ON -to *, and OFF for {pins}.
+{create}{false_path}# Quartus only:
+{read_sdc}# derive_clock_uncertainty
 # Ports that leave the device: values of your board.
-# set_input_delay -clock clk 0.000 [remove_from_collection [all_inputs] [get_ports clk]]
+# set_input_delay -clock clk 0.000 [remove_from_collection [all_inputs] {inside}]
 # set_output_delay -clock clk 0.000 [all_outputs]
 """  # noqa: E501  lines of what is written
     return {"lpf": lpf, "xdc": xdc, "sdc": sdc}
@@ -257,7 +269,7 @@ def readme(top, files, mhz, described):
     if top == CHIP:
         run += " +memory=memory.hex +records=records.hex"
         verdict = "`wrong=0` in its last line"
-    elif top != BLANK:
+    elif top in KINDS:
         run += f" +vectors=vectors.hex +pairs={len(vectors(top).read_text().splitlines())}"
         macro = f"-DCCHIP_BENCH_TOP={'bench_subsystem' if top == SUBSYSTEM else top} "
         wrapper = "bench_subsystem.v " if top == SUBSYSTEM else ""
@@ -268,8 +280,10 @@ def readme(top, files, mhz, described):
         CHIP: "- [Programmer's guide](docs/hardware/programmers-guide.md), "
               "[registers](docs/hardware/chip-registers.md), [images and records](docs/hardware/image.md); "
               "for C++ `chip_registers.hpp`, a driver in C `chip_poll.c`. "
-              "`simulation_models.v` is for `SWAPS` = 1 with `SIMULATION` = 1.\n"}.get(top, "")
-    integration = chip_notes(mhz) if top == CHIP else ""
+              "`simulation_models.v` is for `SWAPS` = 1 with `SIMULATION` = 1.\n"}
+    more[CDC] = more[CHIP]
+    more = more.get(top, "")
+    integration = chip_notes(top, mhz) if top in (CHIP, CDC) else ""
     ip_xact = (f"- `{top}.xml`: IP-XACT component, IEEE 1685-2014: buses, registers, ports, parameters.\n"
                if described else "")
     return f"""<!-- SPDX-License-Identifier: Apache-2.0 -->
@@ -286,15 +300,20 @@ def readme(top, files, mhz, described):
 {integration}"""  # noqa: E501  lines of what is written
 
 
-def chip_notes(mhz):
+def chip_notes(top, mhz):
     """What an integrator of the chip has to know, for its README.md."""
     with open(ROOT / "docs" / "figures" / "fpga_chip_bill.csv", newline="") as file:
         size = next(row for row in csv.DictReader(file) if (row["row"], row["block"]) == (CHIP.split("_")[1], "all"))
+    first = """- **Instance**: `chip_instance.v`, default parameters, ports of swaps tied off. With `SWAPS` = 0 tie their inputs to 0.
+- **Reset**: `rst` is active high and synchronous to `clk`, for 2 clocks or more, also after power-up. It"""  # noqa: E501  lines of what is written
+    if top == CDC:
+        first = """- **Clocks**: of any ratio. Crossings: after the clocks, in Vivado `read_xdc -unmanaged constraints/cdc.xdc`, in Quartus `constraints/cdc.sdc`; both are written from the manuals, no tool of theirs has read them. nextpnr times no path between two clocks and bounds
+  none: keep the slower period above the longest wire.
+- **Reset**: `rst`, `axil_rst`, `mem_rst`, active high, each on its clock for 2 clocks or more, together or in turn, also after power-up. A reset"""  # noqa: E501  lines of what is written
     return f"""
 ## In a design
 
-- **Instance**: `chip_instance.v`, default parameters, ports of swaps tied off. With `SWAPS` = 0 tie their inputs to 0.
-- **Reset**: `rst` is active high and synchronous to `clk`, for 2 clocks or more, also after power-up. It forgets what is outstanding on both buses: reset these with it.
+{first} forgets what is outstanding on both buses: reset these with it.
 - **Reset while the bus lives on** (a processor's): clear `control.enable`, write `control.soft_reset`, wait until `status.resetting` is 0: then nothing is outstanding on `m_axi` (with `SWAPS`, wait for a swap's end, too). Hold all accesses to the registers, then `rst`. If
   `resetting` stays 1, memory has lost a response: only a reset of chip and bus helps, or a firewall or shutdown manager between them that completes the rest.
 - **Coherency**: `AXI_ARCACHE` = 3, `AXI_AWCACHE` = 2: normal memory, not cacheable; `AXI_PROT` = 0: secure. A coherent port wants others, see docs/hardware/uio.md; there is no `AxUSER`. Map images and rings uncached, or flush and invalidate as the programmer's guide says. A port
@@ -336,6 +355,9 @@ def export(top, options):
     (folder / f"{top}.vhd").write_text(vhdl.package(top))
     for kind, text in constraints(top, mhz).items():
         (folder / "constraints" / f"{top}.{kind}").write_text(text)
+    if top in CLOCKS:
+        for name in ("vivado/cdc.xdc", "quartus/cdc.sdc"):
+            shutil.copy(ROOT / "scripts" / name, folder / "constraints")
     write_pages(folder, closure(top, read_list(RTL / "cchip.f") | (read_list(MODELS) if models else {})))
     shutil.copytree(ROOT / "LICENSES", folder / "LICENSES")
     for name in FILES.get(top, (BENCH,)):
@@ -343,7 +365,7 @@ def export(top, options):
     if top == CHIP:
         for name in ("memory", "records"):
             shutil.copy(VECTORS / f"{name}_chip.hex", folder / f"{name}.hex")
-    elif top != BLANK:
+    elif top in KINDS:
         shutil.copy(vectors(top), folder / "vectors.hex")
     described = top == CHIP and write_ip_xact(folder)
     (folder / "README.md").write_text(readme(top, files, mhz, described))
@@ -352,7 +374,7 @@ def export(top, options):
 
 def main():
     listed = read_list(RTL / "cchip.f")
-    tops = [top for top in (*KINDS, BLANK, CHIP) if top in listed]
+    tops = [top for top in (*KINDS, BLANK, CHIP, CDC) if top in listed]
     if {"-h", "--help"} & set(sys.argv[1:]):
         print(__doc__)
         return 0

@@ -36,6 +36,12 @@ def channels(signals):
     return "READ_WRITE" if "AWVALID" in signals else "READ_ONLY"
 
 
+def clock_of(bus, names):
+    """The clock of a bus: one of its own where the module has it."""
+    own = "axil_clk" if bus == "s_axil" else "mem_clk"
+    return own if own in names else "clk"
+
+
 def attribute(name, names, first):
     """Vivado's attributes of a port, or nothing. `first`: of its bus."""
     bus, signal = member(name)
@@ -44,11 +50,12 @@ def attribute(name, names, first):
         info = f"xilinx.com:interface:aximm:1.0 {bus} {signal}"
         more = (f"PROTOCOL {BUSES[bus][1]}, READ_WRITE_MODE {channels(signals)}, SUPPORTS_NARROW_BURST 0"
                 if first else "")
-    elif name == "clk":
-        info, found = "xilinx.com:signal:clock:1.0 clk CLK", buses(names)
-        more = (f"ASSOCIATED_BUSIF {':'.join(found)}, " if found else "") + "ASSOCIATED_RESET rst"
-    elif name == "rst":
-        info, more = "xilinx.com:signal:reset:1.0 rst RST", "POLARITY ACTIVE_HIGH"
+    elif re.fullmatch(r"(\w+_)?clk", name):
+        info = f"xilinx.com:signal:clock:1.0 {name} CLK"
+        found = [bus for bus in buses(names) if clock_of(bus, names) == name]
+        more = (f"ASSOCIATED_BUSIF {':'.join(found)}, " if found else "") + f"ASSOCIATED_RESET {name[:-3]}rst"
+    elif re.fullmatch(r"(\w+_)?rst", name):
+        info, more = f"xilinx.com:signal:reset:1.0 {name} RST", "POLARITY ACTIVE_HIGH"
     elif name == "irq":
         info, more = "xilinx.com:signal:interrupt:1.0 irq INTERRUPT", "SENSITIVITY LEVEL_HIGH"
     else:

@@ -104,7 +104,7 @@ test-gates: $(RELEASE)/build.ninja ## netlists for Lattice ECP5 and Xilinx 7: pr
 	tests/gates/gates.py prove --jobs $(JOBS)
 	tests/gates/gates.py simulate --vectors $(RELEASE)/bin/cchip_pair_vectors --jobs $(JOBS)
 
-EXPORTED ?= $(addprefix cchip_,primtest_tri_tri primtest_tri_quad primtest_quad_quad primtest_array primtest_subsystem primtest_blank chip)
+EXPORTED ?= $(addprefix cchip_,primtest_tri_tri primtest_tri_quad primtest_quad_quad primtest_array primtest_subsystem primtest_blank chip chip_cdc)
 test-export: ## each of the EXPORTED folders alone in Verilator, Icarus and Yosys, and its bench, which must fail on a fault; no C++ is built
 	for top in $(EXPORTED); do python3 -B tests/export/test_export.py $$top $(CURDIR)/build/test-export/$$top || exit 1; done
 

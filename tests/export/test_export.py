@@ -21,15 +21,17 @@ TOP, SCRATCH = "", ""
 BLANK = "cchip_primtest_blank"
 SUBSYSTEM = "cchip_primtest_subsystem"
 CHIP = "cchip_chip"
+CDC = "cchip_chip_cdc"
 # What a bench prints if all is well, and nothing else; how it names the first fault.
 PASS = r"\APASS [^\n]*\n\Z"
 PASS_CHIP = r"\Aquery=1 records=[1-9]\d* wrong=0 clocks=[1-9]\d*\n\Z"
-FAIL = r"(?m)^FAIL clock "
+FAIL = r"(?m)^FAIL "
 FAIL_CHIP = (r"(?m)^CCHIP_ASSERT failed: |^clock \d+: a record that is not expected$(.*\n)*^query=1 records=\d+ "
              r"wrong=[1-9]\d* clocks=\d+$")
 # Parameters of more elaborations: together they use every module below the top.
 MORE = {SUBSYSTEM: ("-chparam SIMULATION 1", "-chparam SIMULATION 1 -chparam KINDS 4"),
         CHIP: ("-chparam SWAPS 1", "-chparam SWAPS 1 -chparam SIMULATION 1")}
+MORE[CDC] = MORE[CHIP]
 
 
 def export(top, out):
@@ -98,12 +100,12 @@ class Export(unittest.TestCase):
                 "-ARREADY", "-AWREADY", "-WREADY", "-BVALID", "-BRESP", "-RVALID", "-RDATA", "-RRESP"}
         read = {*(f"AR{s}" for s in full), "RREADY", "-ARREADY", "-RVALID", "-RDATA", "-RRESP", "-RLAST"}
         whole = read | lite | {*(f"AW{s}" for s in full), "WLAST", "ARID", "AWID", "-RID", "-BID"}
-        if TOP == CHIP:
+        if TOP in (CHIP, CDC):
             masters = {"s_axil": lite, "m_axi": whole, "m_axi_cfg": read}
         elif TOP == SUBSYSTEM:
             masters = {"s_axil": lite, "m_axi": read}
         modes = {"s_axil": "PROTOCOL AXI4LITE, READ_WRITE_MODE READ_WRITE",
-                 "m_axi": f"PROTOCOL AXI4, READ_WRITE_MODE READ_{'WRITE' if TOP == CHIP else 'ONLY'}",
+                 "m_axi": f"PROTOCOL AXI4, READ_WRITE_MODE READ_{'ONLY' if TOP == SUBSYSTEM else 'WRITE'}",
                  "m_axi_cfg": "PROTOCOL AXI4, READ_WRITE_MODE READ_ONLY"}
         for path in self.folder.glob(f"{TOP}*.json"):
             module = json.loads(path.read_text())["modules"][TOP]
@@ -122,16 +124,21 @@ class Export(unittest.TestCase):
                     self.assertEqual((vlnv, interface, signal), {
                         "clk": ("xilinx.com:signal:clock:1.0", "clk", "CLK"),
                         "rst": ("xilinx.com:signal:reset:1.0", "rst", "RST"),
-                        "irq": ("xilinx.com:signal:interrupt:1.0", "irq", "INTERRUPT")}[name])
+                        "irq": ("xilinx.com:signal:interrupt:1.0", "irq", "INTERRUPT"),
+                        **{f"{side}_{name}": (f"xilinx.com:signal:{kind}:1.0", f"{side}_{name}", name.upper())
+                           for side in ("axil", "mem") for name, kind in (("clk", "clock"), ("rst", "reset"))}}[name])
                 if "X_INTERFACE_PARAMETER" in attributes:
                     own, _, rest = attributes["X_INTERFACE_PARAMETER"].partition(", ")
                     self.assertEqual(own, f"XIL_INTERFACENAME {interface}")
                     self.assertNotIn(interface, parameters)
                     parameters[interface] = rest
             self.assertEqual(found, masters)
-            associated = f"ASSOCIATED_BUSIF {':'.join(masters)}, " if masters else ""
-            self.assertEqual(parameters.pop("clk"), f"{associated}ASSOCIATED_RESET rst")
-            self.assertEqual(parameters.pop("rst"), "POLARITY ACTIVE_HIGH")
+            clocks = {"": list(masters)} if TOP != CDC else {"": [], "axil_": ["s_axil"],
+                                                              "mem_": ["m_axi", "m_axi_cfg"]}
+            for side, buses in clocks.items():
+                associated = f"ASSOCIATED_BUSIF {':'.join(buses)}, " if buses else ""
+                self.assertEqual(parameters.pop(f"{side}clk"), f"{associated}ASSOCIATED_RESET {side}rst")
+                self.assertEqual(parameters.pop(f"{side}rst"), "POLARITY ACTIVE_HIGH")
             self.assertEqual(parameters, {**{bus: f"{modes[bus]}, SUPPORTS_NARROW_BURST 0" for bus in masters},
                                           **({"irq": "SENSITIVITY LEVEL_HIGH"} if masters else {})})
 
@@ -162,7 +169,7 @@ class Export(unittest.TestCase):
             expected |= {f"rtl/{leaf}", f"rtl/vendor/ecp5/{pathlib.Path(leaf).name}"}
         if TOP in MORE:
             expected.add("rtl/vendor/ecp5/cchip_dp16kd.v")  # the block under the leaf
-        if TOP == CHIP:
+        if TOP in (CHIP, CDC):
             expected |= {"rtl/common/cchip_dual_ram.v", "rtl/vendor/ecp5/cchip_dual_ram.v"}
         self.assertEqual(set(portable) ^ set(device), expected)
         self.assertEqual([name for name in set(portable) & set(device) if portable[name] != device[name]], [])
@@ -181,10 +188,10 @@ class Export(unittest.TestCase):
                 self.assertTrue((self.folder / line).is_file(), line)
 
     def test_constraints(self):
-        """The Tcl ones run and set one clock on one port, no faster than what was measured; all three agree about it.
+        """The Tcl ones run and set the clocks on their ports, no faster than what was measured; all three agree.
         False is the path from the port that is of no clock, and no other."""
         found = {"lpf": re.findall(r'^FREQUENCY PORT "(\w+)" ([\d.]+) MHZ;$', self.constraints("lpf"), re.M)}
-        false_paths = [["cfg_error"]] if TOP in (CHIP, SUBSYSTEM) else []
+        false_paths = [["cfg_error"]] if TOP in (CHIP, CDC, SUBSYSTEM) else []
         for kind in ("xdc", "sdc"):
             commands = ("proc get_ports {name} {return $name}\n"
                         "proc set_false_path {from name} {puts \"$from $name\"}\n"
@@ -195,11 +202,17 @@ class Export(unittest.TestCase):
             lines = [line.split() for line in text.splitlines()]
             self.assertEqual([line[1:] for line in lines if line[0] == "-from"], false_paths)
             found[kind] = [(line[0], f"{1000 / float(line[1]):.0f}") for line in lines if line[0] != "-from"]
-        (port, mhz), = found["lpf"]
-        self.assertEqual(port, "clk")
-        self.assertEqual(list(found.values()), [[("clk", mhz)]] * 3)
+        mhz = found["lpf"][0][1]
+        ports = ("clk", "axil_clk", "mem_clk") if TOP == CDC else ("clk",)
+        self.assertEqual(list(found.values()), [[(port, mhz) for port in ports]] * 3)
+        crossings = ("vivado/cdc.xdc", "quartus/cdc.sdc") if TOP == CDC else ()
+        self.assertEqual(len(list((self.folder / "constraints").iterdir())), 3 + len(crossings))
+        for name in crossings:
+            copied = self.folder / "constraints" / pathlib.Path(name).name
+            self.assertEqual(copied.read_text(), (ROOT / "scripts" / name).read_text())
+            self.assertIn(f"constraints/{copied.name}", (self.folder / "README.md").read_text())
         page = (ROOT / "docs/hardware/fpga.md").read_text()
-        row = {CHIP: "chip_tri", SUBSYSTEM: "subsystem1", BLANK: "tri_tri",
+        row = {CHIP: "chip_tri", CDC: "chip_tri", SUBSYSTEM: "subsystem1", BLANK: "tri_tri",
                "cchip_primtest_array": "array6"}.get(TOP, TOP[len("cchip_primtest_"):])
         measured = re.search(rf"^\| `{row}` \|.*?\| [\d.]+ / ([\d.]+) / [\d.]+, \d+ seed", page, re.M)[1]
         self.assertLessEqual(float(mhz), float(measured))
@@ -249,16 +262,19 @@ class Export(unittest.TestCase):
         return text
 
     def test_readme_is_short(self):
-        self.assertLessEqual(len((self.folder / "README.md").read_text().splitlines()), 30 if TOP == CHIP else 14)
+        lines = (self.folder / "README.md").read_text().splitlines()
+        self.assertLessEqual(len(lines), 30 if TOP in (CHIP, CDC) else 14)
 
     def test_bench_passes(self):
         self.assertRegex(self.bench(*self.commands()), self.passes)
 
     def test_bench_can_fail(self):
-        """A multiplier, or the blank module's constant, that is wrong in one bit."""
+        """A multiplier, the blank module's constant, or the word of a crossing, is wrong in one bit."""
         path = self.folder / self.file
         text = path.read_text()
         old, new = (r"(idle *=) 1'b1", r"\1 1'b0") if TOP == BLANK else (r"(a_q \* b_q)", r"\1 ^ 36'd1")
+        if TOP == CDC:
+            old, new = r"(data_q *<= mem\[\w+[^;]*);", r"\1 ^ 1'b1;"
         broken, count = re.subn(old, new, text)
         self.assertEqual(count, 1)
         path.write_text(broken)

@@ -18,7 +18,7 @@ import export  # noqa: E402
 import vhdl  # noqa: E402
 from tools import run, tool  # noqa: E402
 
-TOPS = [*export.KINDS, export.BLANK, export.CHIP, "cchip_chip_cdc"]
+TOPS = [*export.KINDS, export.BLANK, export.CHIP, export.CDC]
 
 
 def user(top, generics=""):

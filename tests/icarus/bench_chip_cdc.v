@@ -42,7 +42,10 @@ module bench_chip_cdc;
   task check(input good, input [8*60-1:0] what);
     if (good !== 1'b1) begin
       $display("FAIL %0s", what);
+`ifdef __ICARUS__
       $finish_and_return(1);
+`endif
+      $finish;
     end
   endtask
   task write(input [11:0] to, input [31:0] value);
@@ -106,7 +109,7 @@ module bench_chip_cdc;
     write(12'h020, 32'h2);
     repeat (60) @(posedge axil_clk);
     check(!irq, "the interrupt ends as it is cleared");
-    $display("PASS");
+    $display("PASS beats=%0d", beats);
     $finish;
   end
 endmodule
