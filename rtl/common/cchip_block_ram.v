@@ -15,7 +15,8 @@
 //   write        WORDS words at once: word i of write_data at address WORDS * write_addr + i
 //   latency      read_data belongs to read_addr of 2 clocks before
 //   throughput   a write and a read every clock
-//   collision    a word that is read on the clock on which it is written: any value
+//   collision    a word that is read on the clock on which it is written: any value; in simulation
+//                the old word, with the macro CCHIP_POISON random bits
 //   device       rtl/cchip_ecp5.f takes the block itself, vendor/ecp5/cchip_block_ram.v, because
 //                Yosys does not pack the register
 //   cuts         every path
@@ -40,7 +41,19 @@ module cchip_block_ram #(
 );
 
   reg [WIDTH-1:0] read_data_q;
+`ifdef CCHIP_POISON
+  // simulation: the word of a collision is random bits, not the old word
+  reg [1:0] collision_q;
+  reg [WIDTH-1:0] random_q;
+  integer r;
+  always @(posedge clk) begin
+    collision_q <= {collision_q[0], write && read_addr >> (WORDS == 4 ? 2 : 0) == write_addr};
+    for (r = 0; r < WIDTH; r = r + 1) if (collision_q[0]) random_q[r] <= ^$random;
+  end
+  assign read_data = collision_q[1] ? random_q : read_data_q;
+`else
   assign read_data = read_data_q;
+`endif
 
   `CCHIP_REFUSE(WIDTH < 1 || ADDR_W < 3 || ADDR_W > 16,
                 cchip_error_block_ram_WIDTH_below_1_or_ADDR_W_not_3_to_16)

@@ -6,7 +6,8 @@
 //   latency      read_data belongs to the address of 2 clocks before
 //   throughput   two accesses every clock
 //   collision    read_data_a of a clock with write, and read_data_b of the word that is written on
-//                that clock: any value
+//                that clock: any value; in simulation the old word, with the macro CCHIP_POISON
+//                random bits
 //   device       rtl/cchip_ecp5.f takes the block itself, vendor/ecp5/cchip_dual_ram.v
 //   cuts         every path
 //   reset        none; words never written hold any value
@@ -46,8 +47,25 @@ module cchip_dual_ram #(
     word_b_q      <= mem[addr_b];
     read_data_b_q <= word_b_q;
   end
+`ifdef CCHIP_POISON
+  // simulation: the words of a collision are random bits, not the old word
+  reg [1:0] collision_a_q, collision_b_q;
+  reg [WIDTH-1:0] random_a_q, random_b_q;
+  integer r;
+  always @(posedge clk) begin
+    collision_a_q <= {collision_a_q[0], write};
+    collision_b_q <= {collision_b_q[0], write && addr_a == addr_b};
+    for (r = 0; r < WIDTH; r = r + 1) begin
+      if (collision_a_q[0]) random_a_q[r] <= ^$random;
+      if (collision_b_q[0]) random_b_q[r] <= ^$random;
+    end
+  end
+  assign read_data_a = collision_a_q[1] ? random_a_q : read_data_a_q;
+  assign read_data_b = collision_b_q[1] ? random_b_q : read_data_b_q;
+`else
   assign read_data_a = read_data_a_q;
   assign read_data_b = read_data_b_q;
+`endif
 
 endmodule
 `default_nettype wire
