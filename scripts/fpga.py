@@ -15,9 +15,9 @@ usage: fpga.py [ROW[:SEEDS]...] [options]     without ROW all rows; `fpga.py --l
   --campaign PATH   cchip_campaign, which counts the mean beats (default build/release/bin/cchip_campaign, built by
                     `make campaign-build`); without it there are no pairs per second
   --pairs N         pairs of each class for the mean beats (default 20000)
-  --families        count the blocks of Xilinx 7 and of Intel Cyclone V, too
-  --write           rewrite the rows of this run in the generated tables of docs/hardware/fpga.md; other rows stay;
-                    all rows: the families, too
+  --families        only count what the rows that have it take of other families: synthesis alone; --write: into
+                    docs/hardware/fpga-vendors.md
+  --write           rewrite the rows of this run in the generated tables of docs/hardware/fpga.md; other rows stay
   --bill            only the bills by block of the rows that have one (chip_tri, chip): synthesis, without place and
                     route
   --estimate        only place, seed 1 (or as many as --seeds or the row says), and print what limits the clock before a
@@ -29,7 +29,7 @@ usage: fpga.py [ROW[:SEEDS]...] [options]     without ROW all rows; `fpga.py --l
   --no-floorplan    place the chip's rows without scripts/floorplan.py, which gives block RAMs and multipliers their
                     places
   --goal MHZ        clock that --estimate counts ends behind (default 100)
-  --check           nothing but this: exit 1 if a short table of docs/hardware/fpga.md is not made of the lines of its
+  --check           nothing but this: exit 1 if a short table of its pages is not made of the lines of its
                     CSV file in docs/figures
   --list            print the rows
 
@@ -73,6 +73,7 @@ SUBSYSTEM = "scripts/fpga_subsystem.v"
 REGION = "cchip_pr_region"
 DEVICE = ("--85k", "--speed", "6", "--package", "CABGA756")
 PAGE = ROOT / "docs" / "hardware" / "fpga.md"
+FAMILIES_PAGE = PAGE.with_name("fpga-vendors.md")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -155,7 +156,7 @@ def rows():
     # with the parameters of the chip, and without the wide multiplexers of the device as there: for them Yosys takes
     # more LUTs
     table += [Row(name.replace("cchip_", ""), name, parameters, shape="", seeds=3, placer="heap", block=True,
-                  synth=" -nowidelut")
+                  synth=" -nowidelut", families=name == "cchip_primtest_point_tri")
               for name, parameters in CHIP_PARAMETERS.items()]
     # the whole chip: its bill by block, then flat; a third fewer multiplexers of LUTs without the device's wide ones
     small = (("QUERIES", 8), ("PAIRS", 24), ("LEAVES", 8), ("LEAF_DEPTH", 40), ("LEAF_NUMBERS", 32), ("CACHE_KB", 64),
@@ -326,29 +327,39 @@ def synthesise(row, options):
     return yosys(f"{row.name}.synth", script, [text, made], "netlist.json", made)
 
 
-# command of Yosys, and the cells that each column counts
+# command of Yosys, the cells that each column counts, and macros
 FAMILIES = {
     # the attribute: see "Netlists" in docs/README.md
     "Xilinx 7": ("setattr -mod -set keep_hierarchy 1 cchip_mul18\nsynth_xilinx -family xc7 -flatten", {
         "LUT": r"LUT[1-6]", "carry": r"CARRY4", "FF": r"FD[RSCP]E", "DSP": r"DSP48E1", "block RAM": r"RAMB\w+",
         "distributed RAM": r"RAM\d+\w+", "shift register": r"SRL\w+"}),
     "Intel Cyclone V": ("synth_intel_alm -family cyclonev", {
-        "LUT": r"MISTRAL_ALUT[2-6]", "carry": r"MISTRAL_ALUT_ARITH", "FF": r"MISTRAL_FF", "DSP": r"MISTRAL_MUL\w+",
-        "block RAM": r"MISTRAL_M10K", "distributed RAM": r"MISTRAL_MLAB", "shift register": r"(?!)"}),
+        "LUT": r"MISTRAL_ALUT[2-6]", "carry": r"MISTRAL_ALUT_ARITH", "FF": r"MISTRAL_FF",
+        "DSP": r"MISTRAL_MUL\w+", "block RAM": r"MISTRAL_M10K", "distributed RAM": r"MISTRAL_MLAB"}),
+    "Lattice Nexus": ("synth_nexus", {
+        "LUT": r"LUT4|INV", "carry": r"CCU2", "FF": r"FD1P3\wX", "DSP": r"MULT\w+",
+        "block RAM": r"P?DPS?C\w+16K\w*|LRAM\w*|PDPSC512K\w*", "distributed RAM": r"DPR16X4"}),
+    # Yosys 0.23 maps no multiplication to Gowin's MULT18X18: each leaf is counted as one
+    "Gowin": ("blackbox cchip_mul18\nsynth_gowin", {
+        "LUT": r"LUT[1-4]|INV", "carry": r"ALU", "FF": r"DFF\w*", "DSP": r"cchip_mul18",
+        "block RAM": r"S?DPX?9?B?|SPX?9?", "distributed RAM": r"RAM16\w+"}),
+    # no memory of LUTs; Yosys 0.23 maps no flip-flop with a value after configuration
+    "GateMate": ("hierarchy -auto-top\nproc\nsetattr -unset init w:*\nsynth_gatemate", {
+        "LUT": r"CC_(LUT[1-4]|L2T[45])", "carry": r"CC_ADDF", "FF": r"CC_DFF", "DSP": r"CC_MULT",
+        "block RAM": r"CC_BRAM_\w+"}, "-DCCHIP_LUT_RAM="),
 }
 
 
 def count_family(row, family):
     """Cells of the module alone with the portable multiplier leaf, {column: number}; `packed` are the multiplier
     blocks that hold both registers of the leaf, at the inputs and behind the multiplier (Intel's model has none)."""
-    row = dataclasses.replace(row, files="cchip.f")
-    text = sources(row)
-    del text[HARNESS]
-    command, columns = FAMILIES[family]
+    text = needed(row.top, "cchip.f")
+    command, columns, *macros = FAMILIES[family]
     settings = "".join(f"chparam -set {name} {value} {row.top}\n" for name, value in row.parameters)
-    script = read_verilog(text) + settings + (f"{command} -top {row.top}\nsetattr -mod -unset keep_hierarchy *\n"
-                                              "flatten\nopt_clean\nwrite_json {}/netlist.json\n")
-    folder = yosys(f"{row.name}.{family.split()[0].lower()}", script, text, "netlist.json")
+    script = read_verilog(text, *macros) + settings + (
+        f"{command} -top {row.top}\nsetattr -mod -unset keep_hierarchy *\nflatten\nopt_clean\n"
+        "write_json {}/netlist.json\n")
+    folder = yosys(f"{row.name}.{family.split()[-1].lower()}", script, text, "netlist.json")
     modules = json.loads((folder / "netlist.json").read_text())["modules"]
     found = modules[row.top]["cells"].values()
     counts = {name: sum(bool(re.fullmatch(pattern, cell["type"])) for cell in found)
@@ -670,7 +681,7 @@ def families_table(found):
     for name, row in found.items():
         for family, counts in row.get("families", {}).items():
             packed = f"{counts['DSP']}, {counts['packed']} packed" if "Xilinx" in family else counts["DSP"]
-            body.append([f"`{name}`", family, *(packed if c == "DSP" else counts[c] for c in columns)])
+            body.append([f"`{name}`", family, *(packed if c == "DSP" else counts.get(c, 0) for c in columns)])
     return datasheet.table(["row", "family", *columns], body)
 
 
@@ -733,7 +744,7 @@ def endpoints_table(found):
 BLOCKS = {"blocks": blocks_table}
 CHIPS = {"chip": blocks_table, "chip_bill": owners_table, "chip_endpoints": endpoints_table}
 SUBSYSTEMS = {"subsystems": subsystems_table, "endpoints": endpoints_table}
-TABLES = {"ecp5": area_table, "choices": choices_table, "classes": classes_table, "families": families_table}
+TABLES = {"ecp5": area_table, "choices": choices_table, "classes": classes_table}
 
 
 def few_blocks(rows):
@@ -756,6 +767,14 @@ def few_classes(rows):
             [[name, *(x for shape in shapes for x in rate.get((shape, name), ["-", "-"]))] for name in classes])
 
 
+def few_families(rows):
+    """The tests with their default parameters."""
+    names = ("tri_tri", "tri_quad", "quad_quad", "primtest_point_tri")
+    columns = ["family", "LUT", "carry", "FF", "DSP", "block RAM", "distributed RAM", "shift register"]
+    return (["row", *columns],
+            [[f"`{r['row']}`", *(r[c] for c in columns)] for name in names for r in rows if r["row"] == name])
+
+
 def few_owners(rows):
     """Sites of the largest nine blocks, of the others together, and of all."""
     chips = [*dict.fromkeys(r["row"] for r in rows)]
@@ -772,7 +791,11 @@ def few_owners(rows):
 
 # tables that are too long for the page, which shows what these make of their lines; all lines are in
 # docs/figures/fpga_NAME.csv
-LONG = {"blocks": few_blocks, "classes": few_classes, "chip_bill": few_owners}
+LONG = {"blocks": few_blocks, "classes": few_classes, "chip_bill": few_owners, "families": few_families}
+
+
+def page_of(name):
+    return FAMILIES_PAGE if name == "families" else PAGE
 
 
 def csv_of(name):
@@ -793,7 +816,7 @@ def write_table(name, table):
             csv.writer(file, lineterminator="\n").writerows([lines[0], *lines[2:]])
         print(f"wrote {csv_of(name).relative_to(ROOT)}", flush=True)
         table = short_table(name, table)
-    datasheet.rewrite(PAGE, name, table)
+    datasheet.rewrite(page_of(name), name, table)
 
 
 def present_table(name):
@@ -809,13 +832,14 @@ def check():
     """Compares the short tables of the page with their files line by line; number of lines that differ."""
     differ = 0
     for name in LONG:
-        shown = re.search(datasheet.BLOCK.format(f" {name}"), PAGE.read_text(), re.S)[0].splitlines()[1:-1]
+        page_name = page_of(name)
+        shown = re.search(datasheet.BLOCK.format(f" {name}"), page_name.read_text(), re.S)[0].splitlines()[1:-1]
         want = short_table(name, "\n".join(present_table(name))).splitlines()
         for page, file in itertools.zip_longest(shown, want, fillvalue="(no line)"):
             if page != file:
                 differ += 1
-                print(f"docs/hardware/fpga.md, table {name}:\n  page: {page}\n  {csv_of(name).relative_to(ROOT)}: "
-                      f"{file}")
+                print(f"{page_name.relative_to(ROOT)}, table {name}:\n  page: {page}\n  "
+                      f"{csv_of(name).relative_to(ROOT)}: {file}")
     print(f"{len(LONG)} short tables, {differ} lines differ from their files")
     return differ
 
@@ -851,8 +875,6 @@ def measure(chosen, options):
 
         beats = {shape: submit(mean_beats, shape, options)
                  for shape in dict.fromkeys(row.shape for row in chosen) if shape}
-        counts = {(row.name, family): submit(count_family, row, family)
-                  for row in chosen if options.families and row.families for family in FAMILIES}
         syntheses = {row: submit(synthesise, row, options) for row in chosen}
         placed = {row: {seed: submit(place, row, synthesis.result(), seed, options)
                         for seed in range(1, row.seeds + 1)}
@@ -864,9 +886,6 @@ def measure(chosen, options):
                 continue
             found[row.name] = figures(row, syntheses[row].result(), reports, beats[row.shape].result()
                                       or {} if row.shape else {})
-            of_row = {family: job.result() for (name, family), job in counts.items() if name == row.name}
-            if None not in of_row.values() and of_row:
-                found[row.name]["families"] = of_row
     return found, failures
 
 
@@ -898,7 +917,6 @@ def arguments(words=None):
         parser.error(f"no row {unknown[0]}, one of: {' '.join(rows())}")
     if min(options.seeds, options.jobs, options.pairs, *options.rows.values()) < 1:
         parser.error("--seeds, --jobs and --pairs are at least 1")
-    options.families |= options.write and not options.rows
     return options
 
 
@@ -988,6 +1006,16 @@ def main():
         if options.write:
             write_table("chip_bill", with_others("chip_bill", table, found) or table)
         return 0
+    if options.families:
+        with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+            jobs = {row.name: {family: pool.submit(count_family, row, family) for family in FAMILIES}
+                    for row in chosen if row.families}
+        found = {name: {"families": {family: job.result() for family, job in of.items()}} for name, of in jobs.items()}
+        table = families_table(found)
+        print(table)
+        if options.write:
+            write_table("families", with_others("families", table, found) or table)
+        return 0
     version(options.nextpnr, "--version")
     if options.estimate:
         return show_estimates(chosen, options)
@@ -996,8 +1024,8 @@ def main():
     with bar:
         found, failures = measure(chosen, options)
     save(found)
-    made = {name: text for name, text in tables(found) if name != "families" or options.families}
-    for name in ("ecp5", "subsystems", "endpoints", "blocks", "chip", "chip_bill", "chip_endpoints", "families"):
+    made = dict(tables(found))
+    for name in ("ecp5", "subsystems", "endpoints", "blocks", "chip", "chip_bill", "chip_endpoints"):
         if name in made:
             print(made[name])
     if options.write and not failures:
@@ -1009,7 +1037,7 @@ def main():
                 write_table(name, block)
             else:
                 say(f"fpga.py: the table {name} of docs/hardware/fpga.md needs all rows; it is as it was")
-        if options.families:  # every row is of this run
+        if not options.rows:  # every row is of this run
             name_tree()
     for failure in failures:
         say(f"fpga.py: {failure}")

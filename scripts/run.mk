@@ -378,8 +378,9 @@ bench-chip: $(RELEASE)/build.ninja ## queries per second of the simulated chip a
 	cmake --build $(RELEASE) -j $(JOBS) --target chip_speed
 	$(RELEASE)/bin/chip_speed --chip-mhz $(CHIP_MHZ) $(BENCH_ARGS)
 
-fpga: campaign-build venv ## area and clock of every configuration on FPGAs, SEEDS places and routes each (hours), into docs/hardware/fpga.md
+fpga: campaign-build venv ## area and clock of every configuration on FPGAs, SEEDS places and routes each (hours), into docs/hardware/fpga.md and fpga-vendors.md
 	scripts/fpga.py --seeds $(SEEDS) --jobs $(JOBS) --campaign $(CAMPAIGN) --write
+	scripts/fpga.py --families --jobs $(JOBS) --write
 
 ROWS ?= tri_tri_substages6 tri_tri_substages8 tri_tri tri_tri_substages12
 PARAMETER ?= SUBSTAGES
