@@ -117,7 +117,8 @@ class Judge {
     if (!c.all || !c.contacts.empty() || c.relation || c.within > 0 || c.along->isZero(0)) return false;
     const std::array<double, 3> key = {(*c.along)[0], (*c.along)[1], (*c.along)[2]};
     const auto known = clear_.find(key);
-    return known != clear_.end() ? known->second : clear_[key] = stays_clear(c);
+    if (known != clear_.end()) return known->second;
+    return clear_[key] = stays_clear(c);
   }
   bool stays_clear(const Certificate& c) const {
     for (const double part : {0x1p-30, 0x1p-10, 0.125, 0.5, 1.0, 1.75, 10.0}) {

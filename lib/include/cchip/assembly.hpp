@@ -184,7 +184,8 @@ struct AssemblyReport {
 
 struct AssemblyCheckOptions {
   unsigned threads = 0;  ///< 0: as many as there are cores; the report does not depend on it
-  /// Normals of faces in contact that are tried for a pair that overlaps, those of most contacts first.
+  /// Normals of faces in contact that are tried for a pair of which a rule accepts an overlap, those of most contacts
+  /// first; for others that overlap, where the depth decides nothing, at most 16.
   std::size_t most_normals = 100;
 };
 
