@@ -185,7 +185,7 @@ struct AssemblyReport {
 struct AssemblyCheckOptions {
   unsigned threads = 0;  ///< 0: as many as there are cores; the report does not depend on it
   /// Normals of faces in contact that are tried for a pair of which a rule accepts an overlap, those of most contacts
-  /// first; for others that overlap, where the depth decides nothing, at most 16.
+  /// first. Of others, where the depth decides nothing, it is a rougher bound: ways along 16 of them.
   std::size_t most_normals = 100;
 };
 

@@ -204,9 +204,8 @@ AssemblyPair judge_pair(const Assembly& assembly, const RuleBook& rules, std::si
   if (pair.verdict == PairVerdict::apart && clearance > 0) measure(part_a, part_b, clearance, pair);
   const bool with_limit = pair.rule && assembly.rules[*pair.rule].kind == RuleKind::overlap;
   if (pair.verdict == PairVerdict::overlap || (with_limit && shares_volume(pair.verdict))) {
-    constexpr std::size_t enough_to_tell = 16;  // where the depth is told and decides nothing
     pair.way = with_limit ? parting_way(part_a, part_b, assembly.rules[*pair.rule].limit, most_normals)
-                          : parting_way(part_a, part_b, 0, std::min(most_normals, enough_to_tell));
+                          : rough_parting_way(part_a, part_b);
   }
   pair.is_violation = !is_accepted(assembly, rules, pair);
   // What is allowed or is wrong in any case needs no doubt.

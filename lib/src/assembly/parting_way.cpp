@@ -8,6 +8,7 @@
 #include <cchip/solids.hpp>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <vector>
 
@@ -76,30 +77,76 @@ bool are_parted(const AssemblyPart& a, const AssemblyPart& b, const Pose& pose_b
   return result.relation != Relation::crossing;
 }
 
+/// The shortest of the ways along some directions that part B from A; the first that is short enough.
+std::optional<PartingWay> best_way(const AssemblyPart& a, const AssemblyPart& b, double enough,
+                                   const std::vector<Vec3d>& directions) {
+  std::optional<PartingWay> best;
+  for (const Vec3d& direction : directions) {
+    const AlongResult result = clear_along(a.object, a.pose, b.object, b.pose, direction);
+    // A little more than the exact way: the length of the direction, products and the sum below are rounded.
+    const double rounding = 0x1p-50 * b.pose.translation().cwiseAbs().maxCoeff();
+    const double depth = result.upper * (1 + 0x1p-48) + rounding;
+    if (!std::isfinite(depth) || (best && depth >= best->depth)) continue;
+    // Surfaces that are clear of each other may be one inside the other.
+    Pose moved = b.pose;
+    moved.translation() += depth * direction;
+    if (!are_parted(a, b, moved)) continue;
+    best = PartingWay{direction, depth};
+    if (depth <= enough) return best;
+  }
+  return best;
+}
+
+/// For each direction and its opposite the way along it until all of B is past all of A.
+std::vector<PartingWay> ways_past(const AssemblyPart& a, const AssemblyPart& b, const std::vector<Vec3d>& directions) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::vector<std::array<double, 4>> ends(directions.size(), {infinity, -infinity, infinity, -infinity});
+  double greatest = 0;
+  for (const std::size_t side : {0U, 1U}) {
+    const AssemblyPart& part = side == 0 ? a : b;
+    for (const Vec3d& vertex : part.object.mesh().vertices) {
+      const Vec3d at = part.pose * vertex;
+      greatest = std::max(greatest, at.cwiseAbs().maxCoeff());
+      for (std::size_t i = 0; i < directions.size(); ++i) {
+        const double value = directions[i].dot(at);
+        ends[i][2 * side] = std::min(ends[i][2 * side], value);
+        ends[i][2 * side + 1] = std::max(ends[i][2 * side + 1], value);
+      }
+    }
+  }
+  const double rounding = 0x1p-44 * std::max(greatest, b.pose.translation().cwiseAbs().maxCoeff());
+  std::vector<PartingWay> ways;
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    ways.push_back({directions[i], std::max(0.0, ends[i][1] - ends[i][2]) + rounding});
+    ways.push_back({-directions[i], std::max(0.0, ends[i][3] - ends[i][0]) + rounding});
+  }
+  return ways;
+}
+
 }  // namespace
 
 std::optional<PartingWay> parting_way(const AssemblyPart& a, const AssemblyPart& b, double enough,
                                       std::size_t most_normals) {
-  std::optional<PartingWay> best;
-  std::vector<Vec3d> normals = normals_of_contacts(a, b);
-  normals.resize(std::min(normals.size(), most_normals));
-  for (const Vec3d& normal : normals) {
-    for (const double sign : {1.0, -1.0}) {
-      const Vec3d direction = sign * normal;
-      const AlongResult result = clear_along(a.object, a.pose, b.object, b.pose, direction);
-      // A little more than the exact way: the length of the direction, products and the sum below are rounded.
-      const double rounding = 0x1p-50 * b.pose.translation().cwiseAbs().maxCoeff();
-      const double depth = result.upper * (1 + 0x1p-48) + rounding;
-      if (!std::isfinite(depth) || (best && depth >= best->depth)) continue;
-      // Surfaces that are clear of each other may be one inside the other.
-      Pose moved = b.pose;
-      moved.translation() += depth * direction;
-      if (!are_parted(a, b, moved)) continue;
-      best = PartingWay{direction, depth};
-      if (depth <= enough) return best;
-    }
+  std::vector<Vec3d> directions;
+  for (const Vec3d& normal : normals_of_contacts(a, b)) {
+    if (directions.size() / 2 == most_normals) break;
+    directions.insert(directions.end(), {normal, -normal});
   }
-  return best;
+  return best_way(a, b, enough, directions);
+}
+
+PartingWay rough_parting_way(const AssemblyPart& a, const AssemblyPart& b) {
+  constexpr std::size_t most_normals = 16;
+  constexpr std::size_t searched = 2;
+  std::vector<Vec3d> directions = normals_of_contacts(a, b);
+  directions.resize(std::min(directions.size(), most_normals));
+  for (const Vec3d& axis : {Vec3d(Vec3d::UnitX()), Vec3d(Vec3d::UnitY()), Vec3d(Vec3d::UnitZ())})
+    directions.push_back(axis);
+  std::vector<PartingWay> ways = ways_past(a, b, directions);
+  const auto is_shorter = [](const PartingWay& x, const PartingWay& y) { return x.depth < y.depth; };
+  std::stable_sort(ways.begin(), ways.end(), is_shorter);
+  const std::optional<PartingWay> best = best_way(a, b, 0, {ways[0].direction, ways[searched - 1].direction});
+  return best ? std::min(*best, ways[0], is_shorter) : ways[0];
 }
 
 }  // namespace cchip::assembly

@@ -18,6 +18,10 @@ namespace cchip::assembly {
 std::optional<PartingWay> parting_way(const AssemblyPart& a, const AssemblyPart& b, double enough,
                                       std::size_t most_normals);
 
+/// Some translation of B that parts it from A, for people: of those that bring all of B past all of A along up to 16
+/// normals of faces in contact or an axis, the least one, and of the first two the exact ways along them.
+PartingWay rough_parting_way(const AssemblyPart& a, const AssemblyPart& b);
+
 /// Normals of the faces in contact, of unit length, each direction and its opposite once; those of most contacts first.
 std::vector<Vec3d> normals_of_contacts(const AssemblyPart& a, const AssemblyPart& b);
 
