@@ -3,6 +3,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cchip/internal/exact/oracle.hpp>
+#include <cchip/pose.hpp>
 #include <cchip/program/seed.hpp>
 #include <cchip/shapes.hpp>
 #include <cchip/solids.hpp>
@@ -627,6 +628,114 @@ TEST_CASE("solids: points of tetrahedra that overlap, by parity", "[lib][solids]
     if (seen[1][1] && seen[1][0] && seen[0][1]) CHECK(found == SolidRelation::overlapping);
   }
   CHECK(told > 50);
+}
+
+namespace {
+
+/// The places of points to a set of unit cubes, from their coordinates.
+PointPlace place_in(const std::set<std::array<int, 3>>& cubes, const Vec3d& p) {
+  bool any_in = false;
+  bool all_in = true;
+  for (unsigned corner = 0; corner < 8; ++corner) {  // of the cubes around the point
+    std::array<int, 3> cube = {};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double x = p[static_cast<Eigen::Index>(i)];
+      const bool is_whole = x == std::floor(x);
+      cube[i] = static_cast<int>(std::floor(x)) - (is_whole && (corner >> i & 1U) != 0 ? 1 : 0);
+    }
+    const bool is_in = cubes.count(cube) != 0;
+    any_in = any_in || is_in;
+    all_in = all_in && is_in;
+  }
+  return all_in ? PointPlace::inside : any_in ? PointPlace::on_surface : PointPlace::outside;
+}
+
+}  // namespace
+
+TEST_CASE("inside: points and sets of cubes", "[lib][solids]") {
+  std::mt19937_64 random(1000 * sim::seed_from_environment() + 77);
+  std::map<std::string, int> places;
+  for (int n = 0; n < 15; ++n) {
+    // The surface of a set of cubes: faces between one that is in it and one that is not.
+    std::set<std::array<int, 3>> cubes;
+    for (int i = 0; i < 12; ++i) cubes.insert({int(random() % 3), int(random() % 3), int(random() % 3)});
+    Mesh mesh;
+    for (const auto& [x, y, z] : cubes) {
+      const Mesh one = subdivided(box(x, y, z, x + 1, y + 1, z + 1));
+      for (const Mesh::Face& face : one.faces) {
+        Vec3d middle = Vec3d::Zero();
+        for (std::size_t i = 0; i < 3; ++i) middle += one.vertices[face.vertex[i]] / 3;
+        std::array<int, 3> beyond = {x, y, z};
+        for (std::size_t i = 0; i < 3; ++i) {
+          const double at = middle[Eigen::Index(i)] - beyond[i];
+          if (std::abs(at) < 1e-9) beyond[i] -= 1;
+          if (std::abs(at - 1) < 1e-9) beyond[i] += 1;
+        }
+        if (cubes.count(beyond) != 0) continue;
+        const auto offset = static_cast<std::uint32_t>(mesh.vertices.size());
+        for (std::size_t i = 0; i < static_cast<std::size_t>(face.kind); ++i) {
+          mesh.vertices.push_back(one.vertices[face.vertex[i]]);
+        }
+        mesh.faces.push_back({face.kind, {offset, offset + 1, offset + 2, face.kind == Kind::quad ? offset + 3 : 0}});
+      }
+    }
+    std::vector<Vec3d> points;
+    for (int i = 0; i < 2000; ++i) {  // on quarters of the grid, and off it by little
+      Vec3d p;
+      for (double& x : p) {
+        x = double(int(random() % 17) - 2) / 4;
+        if (random() % 4 == 0) x = std::nextafter(x, random() % 2 == 0 ? 9 : -9);
+      }
+      points.push_back(p);
+    }
+    const Object object(mesh);
+    REQUIRE(object.is_closed());
+    const std::vector<PointPlace> found = inside(object, here, points, {}, 1 + unsigned(random() % 3));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      INFO(points[i].transpose());
+      REQUIRE(name_of(found[i]) == std::string(name_of(place_in(cubes, points[i]))));
+      ++places[name_of(found[i])];
+    }
+    // Turned by a quarter and moved: the same places.
+    const Pose pose = make_pose(Vec3d(5, -3, 0.5), Vec3d(90, 0, 180));
+    std::vector<Vec3d> there;
+    std::vector<PointPlace> same;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3d p = pose * points[i];
+      if (pose.inverse() * p != points[i]) continue;  // rounded
+      there.push_back(p);
+      same.push_back(found[i]);
+    }
+    CHECK(there.size() > 300);
+    CHECK(inside(object, pose, there) == same);
+  }
+  for (const auto& [place, count] : places) std::cout << place << ' ' << count << ' ';
+  std::cout << '\n';
+  CHECK(places.size() == 3);
+}
+
+TEST_CASE("inside: rules, quads that are not flat, errors", "[lib][solids]") {
+  const Object twice(both(box(0, 0, 0, 2, 1, 1), box(1, 0, 0, 3, 1, 1)));  // shells that overlap
+  const std::vector<Vec3d> points = {{0.5, 0.5, 0.5}, {1.5, 0.5, 0.5}, {1, 0.5, 0.5}, {4, 0.5, 0.5}};
+  using Places = std::vector<PointPlace>;
+  CHECK(inside(twice, here, points) ==
+        Places{PointPlace::inside, PointPlace::outside, PointPlace::on_surface, PointPlace::outside});
+  CHECK(inside(twice, here, points, {InsideRule::nonzero}) ==
+        Places{PointPlace::inside, PointPlace::inside, PointPlace::on_surface, PointPlace::outside});
+  CHECK(inside(twice, here, {}).empty());
+
+  Mesh bent = box(0, 0, 0, 1, 1, 1);  // the last corner of the roof is higher: two triangles, cut by a diagonal
+  for (Vec3d& v : bent.vertices) v = v == Vec3d(1, 1, 1) ? Vec3d(1, 1, 2) : v;
+  const Object roof(bent);
+  const std::vector<PointPlace> on = inside(roof, here, {{0.5, 0.5, 1}, {0.5, 0.5, 1.25}, {0.5, 0.5, 1.5}});
+  const auto count = std::count(on.begin(), on.end(), PointPlace::on_surface);
+  CHECK(count == 1);  // one of the two diagonals; what is between is in the hull, and on neither triangle
+  CHECK(on[1] != PointPlace::on_surface);
+
+  Mesh open = box(0, 0, 0, 1, 1, 1);
+  open.faces.pop_back();
+  CHECK_THROWS_WITH(inside(Object(open), here, points), Catch::StartsWith("solids: the surface of the object is open"));
+  CHECK_THROWS_WITH(inside(roof, here, {{0, 0, std::nan("")}}), Catch::Contains("point"));
 }
 
 TEST_CASE("solids: a scene, a device", "[lib][solids]") {

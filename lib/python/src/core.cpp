@@ -1833,6 +1833,33 @@ Returns the least factor for which B, moved by that multiple of the direction, t
 inf if they never touch, then touches is False.
 
 Raises as clear_along().)");
+  m.def(
+      "inside",
+      [](nb::handle mesh, nb::handle pose, nb::handle points, const std::string& inside, unsigned threads) {
+        const Object object = to_object(mesh, "object");
+        const Pose place = one_pose(pose, "pose");
+        const std::vector<Vec3d> at = to_points(to_array<double>(points, "float64", "points"));
+        std::vector<std::int8_t> places(at.size());
+        {
+          const cchip::SolidRequest request = to_solid_request(inside);
+          const nb::gil_scoped_release release;
+          const GradualUnderflow mode;
+          const std::vector<cchip::PointPlace> found = cchip::inside(object, place, at, request, threads);
+          for (std::size_t i = 0; i < found.size(); ++i) {
+            places[i] = static_cast<std::int8_t>(static_cast<int>(found[i]) - 1);
+          }
+        }
+        const std::size_t n = places.size();
+        return owned<std::int8_t>(std::move(places), {n});
+      },
+      "object"_a.none(), "pose"_a.none(), "points"_a, nb::kw_only(), "inside"_a = "odd", "threads"_a = 1,
+      nb::sig("def inside(object: Object, pose: numpy.typing.ArrayLike | None, points: numpy.typing.ArrayLike, *, "
+              "inside: str = 'odd', threads: int = 1) -> numpy.typing.NDArray[numpy.int8]"),
+      R"(Where points, (n, 3), are to a placed solid: (n,) int8, 1 inside, 0 on the surface, -1 outside. Exactly.
+
+inside: the rule of solids(). threads: 0 for all cores.
+Raises ValueError: the surface is open; its faces are not all the same way round, with inside='nonzero'; the pose
+flattens space; a point that is not finite.)");
   m.def("solids", &solids_of_two, "a"_a.none(), "pose_a"_a.none(), "b"_a.none(), "pose_b"_a.none(), nb::kw_only(),
         "inside"_a = "odd",
         nb::sig("def solids(a: Object, pose_a: numpy.typing.ArrayLike | None, b: Object, pose_b: "

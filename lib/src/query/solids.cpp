@@ -28,16 +28,20 @@
 // All numbers are integers: vertices in units of 2^exponent, points with a denominator.
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cchip/internal/exact/posed_pairs.hpp>
 #include <cchip/internal/geometry/decimal.hpp>
 #include <cchip/internal/judge/face_pairs.hpp>
 #include <cchip/internal/judge/near_parts.hpp>
+#include <cchip/point_cloud.hpp>
 #include <cchip/solids.hpp>
+#include <future>
 #include <map>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "search/query_scale.hpp"
@@ -553,6 +557,61 @@ void check_solid(const Object& object, const Pose& pose, const SolidRequest& req
                               " flattens space (its determinant is 0), so that the object has no volume");
 }
 
+/// Sides of a solid on which points are that are not on its surface, and which points are.
+class PointPlaces {
+ public:
+  /// \param exponent coordinates of points are multiples of 2^exponent
+  PointPlaces(const Object& object, const Pose& pose, InsideRule inside, int exponent)
+      : side_(object, pose), inside_(inside), exponent_(std::min(exponent, side_.exponent())) {
+    side_.set_exponent(exponent_);
+  }
+
+  bool is_inside(const Vec3d& point) {
+    // A line along z through a point moved by e along x and e^2 along y passes no edge. The point is not on the
+    // surface, so nothing is crossed on the way.
+    const PassedTriangles passed = side_.passed({{whole(point), 1}, {1, 0, 0}, {0, 1, 0}, 2});
+    return inside_ == InsideRule::odd ? passed.below.all % 2 == 1 : passed.below.net != 0;
+  }
+  /// Is the point on one of the triangles of a face, whose hull it is in?
+  bool is_on(std::uint32_t face, const Vec3d& point) {
+    if (side_.object().mesh().faces[face].kind == Kind::tri) return true;
+    bool found = false;
+    side_.for_each_triangle(face, [&](Triangle t) { found = found || is_on_triangle(t, whole(point)); });
+    return found;
+  }
+
+ private:
+  Vector whole(const Vec3d& point) const {
+    Vector result;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const exact::Scaled x = exact::odd(exact::Scaled(point[static_cast<Eigen::Index>(i)]));
+      result[i] = x.mantissa == 0 ? BigInt(0) : BigInt(x.mantissa) << (x.exponent - exponent_);
+    }
+    return result;
+  }
+  bool is_on_triangle(Triangle t, const Vector& p) {
+    using exact::operator-;
+    const auto& corner = side_.corners(t);
+    const Vector& n = side_.normal(t);
+    if (!dot(n, p - corner[0]).is_zero()) return false;
+    const bool is_collapsed = n[0].is_zero() && n[1].is_zero() && n[2].is_zero();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vector edge = corner[(i + 1) % 3] - corner[i];
+      const Vector to = p - corner[i];
+      const Vector turn = exact::cross(edge, to);
+      if (!is_collapsed && sign(dot(n, turn)) < 0) return false;
+      // Of a collapsed one: on one of its edges.
+      const bool is_along = turn[0].is_zero() && turn[1].is_zero() && turn[2].is_zero();
+      if (is_collapsed && is_along && sign(dot(edge, to)) >= 0 && dot(edge, to) <= dot(edge, edge)) return true;
+    }
+    return !is_collapsed;
+  }
+
+  SolidSide side_;
+  InsideRule inside_;
+  int exponent_;
+};
+
 SolidResult relate(Device* device, const CollisionQuery& query, const SolidRequest& request) {
   check_query(query, {});
   check_solid(*query.a, *query.pose_a, request, "A");
@@ -588,6 +647,63 @@ SolidResult solids(Device& device, const Object& a, const Pose& pose_a, const Ob
 SolidResult solids(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b,
                    const SolidRequest& request) {
   return relate(nullptr, {&a, &pose_a, &b, &pose_b}, request);
+}
+
+const char* name_of(PointPlace place) {
+  switch (place) {
+    case PointPlace::outside:
+      return "outside";
+    case PointPlace::on_surface:
+      return "on_surface";
+    case PointPlace::inside:
+      return "inside";
+  }
+  return "";
+}
+
+std::vector<PointPlace> inside(const Object& object, const Pose& pose, const std::vector<Vec3d>& points,
+                               const SolidRequest& request, unsigned threads) {
+  check_pose(pose, "the object");
+  check_solid(object, pose, request, "the object");
+  CloudRequest on_faces;
+  on_faces.contacts = CollisionRequest::Contacts::all;
+  const CloudResult met = collide(PointCloud(points, 0), Pose::Identity(), object, pose, on_faces);
+  int exponent = 0;
+  for (const Vec3d& point : points) {
+    for (const double x : point) {
+      if (x != 0) exponent = std::min(exponent, exact::odd(exact::Scaled(x)).exponent);
+    }
+  }
+  std::map<std::uint32_t, std::vector<std::uint32_t>> parts;  // of a face of the file
+  const Mesh& mesh = object.mesh();
+  if (!met.contacts.empty()) {
+    for (std::uint32_t i = 0; i < mesh.faces.size(); ++i) parts[mesh.number_in_file(i)].push_back(i);
+  }
+  std::vector<PointPlace> places(points.size(), PointPlace::outside);
+  PointPlaces on(object, pose, request.inside, exponent);
+  for (const CloudContact& contact : met.contacts) {
+    const std::vector<std::uint32_t>& faces = parts[contact.face];
+    const bool is_on = faces.size() > 1 || on.is_on(faces[0], points[contact.point]);
+    if (is_on) places[contact.point] = PointPlace::on_surface;
+  }
+  constexpr std::size_t block = 1024;  // points that one thread takes at a time, close to each other in many files
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    PointPlaces sides(object, pose, request.inside, exponent);
+    for (std::size_t begin = next.fetch_add(block); begin < points.size(); begin = next.fetch_add(block)) {
+      for (std::size_t i = begin; i < std::min(points.size(), begin + block); ++i) {
+        if (places[i] != PointPlace::on_surface && sides.is_inside(points[i])) places[i] = PointPlace::inside;
+      }
+    }
+  };
+  if (threads == 0) threads = std::max(1U, std::thread::hardware_concurrency());
+  std::vector<std::future<void>> others;
+  for (std::size_t i = 1; i < threads && i * block < points.size(); ++i) {
+    others.push_back(std::async(std::launch::async, work));
+  }
+  work();
+  for (std::future<void>& other : others) other.get();
+  return places;
 }
 
 std::vector<SolidPair> solids(Device& device, const Scene& scene, const SolidRequest& request) {

@@ -10,7 +10,8 @@ surfaces, not volumes.
 """
 from ._core import (Along, Assembly, AssemblyPair, AssemblyReport, Certificate, CloudResult, Device, Distance, Object,
                     PointCloud, Result, Scene, clear_along, collide, collide_many,
-                    cpu_targets, device_names, distance, first_contact, first_met, load_points, open_device, solids)
+                    cpu_targets, device_names, distance, first_contact, first_met, inside,
+                    load_points, open_device, solids)
 from ._core import version as __version__
 from .manager import CollisionManager, ContactData, DistanceData, scene_to_collision
 from .poses import make_pose
@@ -18,5 +19,5 @@ from .poses import make_pose
 __all__ = ["Along", "Assembly", "AssemblyPair", "AssemblyReport", "Certificate", "CloudResult", "CollisionManager",
            "ContactData", "Device", "Distance", "DistanceData", "Object", "PointCloud", "Result", "Scene",
            "__version__", "clear_along", "collide", "collide_many", "cpu_targets", "device_names", "distance",
-           "first_contact", "first_met",
+           "first_contact", "first_met", "inside",
            "load_points", "make_pose", "open_device", "scene_to_collision", "solids"]
