@@ -145,7 +145,7 @@ const char* name_of(PairVerdict verdict);
 
 /// A translation of B that parts it from A.
 struct PartingWay {
-  Vec3d direction = Vec3d::Zero();  ///< in the world, of length 1 but for rounding: a normal of a face in contact
+  Vec3d direction = Vec3d::Zero();  ///< in the world, of length 1 but for rounding
   double depth = 0;                 ///< how far at most, in units of the assembly
 };
 
@@ -158,8 +158,8 @@ struct AssemblyPair {
   /// False if the parts are not closed, or their shells overlap, so that they may clash although nothing shows it;
   /// `note` says why.
   bool is_judged = true;
-  /// Of parts that overlap: the least of the ways that were tried, or the first that the rule accepts. None if no
-  /// normal of a face in contact gives one.
+  /// Of parts that overlap: the least of the ways that were tried, or the first that the rule accepts. With a rule that
+  /// accepts an overlap, none if no normal of a face in contact gives one.
   std::optional<PartingWay> way = std::nullopt;
   /// Of parts that are too near: bounds of their distance and nearest points, as in DistanceResult.
   double distance_lower = 0;
@@ -185,7 +185,7 @@ struct AssemblyReport {
 struct AssemblyCheckOptions {
   unsigned threads = 0;  ///< 0: as many as there are cores; the report does not depend on it
   /// Normals of faces in contact that are tried for a pair of which a rule accepts an overlap, those of most contacts
-  /// first. Of others, where the depth decides nothing, it is a rougher bound: ways along 16 of them.
+  /// first. Of others, where the depth decides nothing, it is that of a way on which all of B gets past all of A.
   std::size_t most_normals = 100;
 };
 

@@ -30,9 +30,10 @@ Key key_of(const Vec3d& normal) {
 
 }  // namespace
 
-std::vector<Vec3d> normals_of_contacts(const AssemblyPart& a, const AssemblyPart& b) {
+std::vector<Vec3d> normals_of_contacts(const AssemblyPart& a, const AssemblyPart& b, std::size_t most_contacts) {
   CollisionRequest request;
   request.contacts = CollisionRequest::Contacts::all;
+  request.max_contacts = most_contacts;
   const CollisionResult result = collide(a.object, a.pose, b.object, b.pose, request);
   struct Found {
     Vec3d normal;
@@ -136,17 +137,12 @@ std::optional<PartingWay> parting_way(const AssemblyPart& a, const AssemblyPart&
 }
 
 PartingWay rough_parting_way(const AssemblyPart& a, const AssemblyPart& b) {
-  constexpr std::size_t most_normals = 16;
-  constexpr std::size_t searched = 2;
-  std::vector<Vec3d> directions = normals_of_contacts(a, b);
-  directions.resize(std::min(directions.size(), most_normals));
-  for (const Vec3d& axis : {Vec3d(Vec3d::UnitX()), Vec3d(Vec3d::UnitY()), Vec3d(Vec3d::UnitZ())})
-    directions.push_back(axis);
-  std::vector<PartingWay> ways = ways_past(a, b, directions);
-  const auto is_shorter = [](const PartingWay& x, const PartingWay& y) { return x.depth < y.depth; };
-  std::stable_sort(ways.begin(), ways.end(), is_shorter);
-  const std::optional<PartingWay> best = best_way(a, b, 0, {ways[0].direction, ways[searched - 1].direction});
-  return best ? std::min(*best, ways[0], is_shorter) : ways[0];
+  constexpr std::size_t most_contacts = 64;
+  std::vector<Vec3d> directions = normals_of_contacts(a, b, most_contacts);
+  for (int i = 0; i < 3; ++i) directions.emplace_back(Vec3d::Unit(i));
+  const std::vector<PartingWay> ways = ways_past(a, b, directions);
+  return *std::min_element(ways.begin(), ways.end(),
+                           [](const PartingWay& x, const PartingWay& y) { return x.depth < y.depth; });
 }
 
 }  // namespace cchip::assembly

@@ -6,6 +6,7 @@
 
 #include <cchip/assembly.hpp>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -18,12 +19,14 @@ namespace cchip::assembly {
 std::optional<PartingWay> parting_way(const AssemblyPart& a, const AssemblyPart& b, double enough,
                                       std::size_t most_normals);
 
-/// Some translation of B that parts it from A, for people: of those that bring all of B past all of A along up to 16
-/// normals of faces in contact or an axis, the least one, and of the first two the exact ways along them.
+/// A translation of B that parts it from A, for people: the least that brings all of B past all of A along a normal of
+/// some faces in contact or along an axis.
 PartingWay rough_parting_way(const AssemblyPart& a, const AssemblyPart& b);
 
 /// Normals of the faces in contact, of unit length, each direction and its opposite once; those of most contacts first.
-std::vector<Vec3d> normals_of_contacts(const AssemblyPart& a, const AssemblyPart& b);
+/// \param most_contacts of more, any so many are looked at
+std::vector<Vec3d> normals_of_contacts(const AssemblyPart& a, const AssemblyPart& b,
+                                       std::size_t most_contacts = std::numeric_limits<std::size_t>::max());
 
 }  // namespace cchip::assembly
 
