@@ -56,8 +56,9 @@ struct ReceiptReport {
 
 /// Checks receipts against an assembly, as it is now, and its rules, without any search. Certificates are checked by
 /// check_certificate(), sides of solids by rays, all in integers. Trusted are the readers of meshes and rules, which
-/// rule counts for a pair, whether a mesh is closed, and boxes in floating point. \throws std::runtime_error the folder
-/// holds no receipts; one line \throws std::invalid_argument as check()
+/// rule counts for a pair, whether a mesh is closed, and boxes in floating point.
+/// \throws std::runtime_error the folder holds no receipts; one line
+/// \throws std::invalid_argument as check()
 ReceiptReport verify_receipts(const Assembly& assembly, const std::string& folder, unsigned threads = 0);
 
 }  // namespace cchip

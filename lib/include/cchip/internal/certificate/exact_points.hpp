@@ -71,7 +71,8 @@ struct Placed {
   std::array<std::vector<Point>, 2> points;
   Int length = 0;
 };
-/// The vertices of the faces of both meshes in their poses and a length, all multiplied by the same power of two; exact.
+/// The vertices of the faces of both meshes in their poses and a length, all multiplied by the same power of two;
+/// exact.
 inline Placed place(const std::array<const Mesh*, 2>& mesh, const std::array<const Pose*, 2>& pose, double length = 0) {
   std::array<std::vector<bool>, 2> used;
   Scale coordinate, entry, shift;
