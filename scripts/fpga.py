@@ -92,6 +92,7 @@ class Row:
     block: bool = False  # has other ports than a primitive test
     synth: str = ""  # further options of synth_ecp5
     owners: tuple = ()  # modules whose hierarchy is kept in synthesis: the bill by block
+    more: tuple = ()  # (module, file) that are in no list of files
 
     @property
     def coord_w(self):
@@ -233,7 +234,7 @@ def version(tool, option):
 def sources(row):
     """Text of every file that synthesis of the row reads, by name: those of the file list that the harness needs."""
     harness = block_harness(row) if row.block else (ROOT / HARNESS).read_text()
-    return {HARNESS: harness, **needed(row.top, row.files, {"fpga_subsystem": SUBSYSTEM})}
+    return {HARNESS: harness, **needed(row.top, row.files, {"fpga_subsystem": SUBSYSTEM, **dict(row.more)})}
 
 
 def needed(top, files, more=None):
