@@ -8,8 +8,10 @@ usage: run.py [options]
   --seed N          of the sets (default 1)
   --core NAME=FILE[,FILE...]   a further core: top module NAME with the ports of bench/sat/plain_sat.v, in NAME.v and
                     other files named like their modules; those of rtl/ are there, too
+  --only NAME       only this core, and those of further --only
   --simulator NAME  verilator (default; builds each core once) or icarus (builds nothing, slower with many pairs)
-  --area N          place and route every core with the seeds 1..N, as scripts/fpga.py (default 0: not at all)
+  --area N          synthesise, place and route every core with the seeds 1..N, as scripts/fpga.py; 0: synthesise only
+                    (default: nothing of this)
   --committed       area and clock of tri_tri from docs/hardware/fpga.md, which has five seeds, instead
   --nextpnr PATH    as in scripts/fpga.py
   --fault N         a fault in plain_sat, to see that the judge finds it: 1 calls touching apart, 2 trusts flat axes
@@ -24,6 +26,7 @@ import hashlib
 import os
 import pathlib
 import re
+import statistics
 import subprocess
 import sys
 
@@ -118,9 +121,10 @@ def measure(name, top, files, options):
     row = fpga.Row(name, top, shape="", more=modules_of(files))
     synthesis = fpga.synthesise(row, flow)
     reports = {seed: fpga.place(row, synthesis, seed, flow) for seed in range(1, options.area + 1)}
-    found = fpga.figures(row, synthesis, reports, {})
-    return {"lut4": found["lut4"], "carry": found["carry"], "ff": found["ff"], "dsp": found["dsp"],
-            "ram": found["dram"], "mhz": found["fmax_median"], "seeds": len(reports)}
+    module, _, _ = fpga.module_cells(fpga.cells((synthesis / "stat.json").read_text()))
+    clocks = [fpga.fmax(report) for report in reports.values()]
+    return {"lut4": module["LUT4"], "carry": module["CCU2C"], "ff": module["TRELLIS_FF"], "dsp": module["MULT18X18D"],
+            "mhz": statistics.median(clocks) if clocks else None, "seeds": len(clocks)}
 
 
 def committed():
@@ -129,7 +133,7 @@ def committed():
     lut4, comb, ff, dsp, _, ram, clocks = (cell.strip() for cell in line[2:9])
     # sites: logic, two for each carry, six for each distributed RAM
     carry = (int(comb) - int(lut4) - 6 * int(ram)) // 2
-    return {"lut4": int(lut4), "carry": carry, "ff": int(ff), "dsp": int(dsp), "ram": int(ram),
+    return {"lut4": int(lut4), "carry": carry, "ff": int(ff), "dsp": int(dsp),
             "mhz": float(clocks.split(" / ")[1]), "seeds": int(re.search(r"(\d+) seed", clocks)[1])}
 
 
@@ -144,8 +148,9 @@ def cores_table(found, areas):
     body = []
     for name, sets in found.items():
         area = areas.get(name)
-        rate = f"{area['mhz'] / sets[SPEED]['clocks']:.1f}" if area else "-"
-        clock = f"{area['mhz']:.1f}, {area['seeds']} seed{'s' if area['seeds'] > 1 else ''}" if area else "-"
+        placed = area and area["mhz"]
+        rate = f"{area['mhz'] / sets[SPEED]['clocks']:.1f}" if placed else "-"
+        clock = f"{area['mhz']:.1f}, {area['seeds']} seed{'s' if area['seeds'] > 1 else ''}" if placed else "-"
         on_grid = [counts for counts in sets.values() if not counts["rounded"]]
         open_of = lambda some: percent(*(sum(counts[key] for counts in some) for key in ("undecided", "pairs")))
         lone = sorted({counts["lone"] for counts in sets.values()})
@@ -175,7 +180,8 @@ def arguments():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--core", action="append", default=[])
     parser.add_argument("--simulator", choices=("verilator", "icarus"), default="verilator")
-    parser.add_argument("--area", type=int, default=0)
+    parser.add_argument("--only", action="append", default=[])
+    parser.add_argument("--area", type=int)
     parser.add_argument("--nextpnr", type=os.path.abspath)
     parser.add_argument("--fault", type=int, choices=(0, 1, 2), default=0)
     parser.add_argument("--committed", action="store_true")
@@ -187,7 +193,11 @@ def arguments():
         if not re.fullmatch(r"[A-Za-z]\w*", name) or not all((ROOT / file).is_file() for file in files.split(",")):
             parser.error(f"--core {core}: needs NAME=FILE[,FILE...], files from the root of the repository")
         options.cores[name] = (name, files.split(","))
-    if not 1 <= options.pairs <= 16000 or options.area < 0:
+    if not set(options.only) <= set(options.cores):
+        parser.error(f"--only: one of {' '.join(options.cores)}")
+    if options.only:
+        options.cores = {name: core for name, core in options.cores.items() if name in options.only}
+    if not 1 <= options.pairs <= 16000 or (options.area or 0) < 0:
         parser.error("--pairs is 1 to 16000 (a tag has 16 bits), --area at least 0")
     return options
 
@@ -215,7 +225,7 @@ def main():
         for name, (top, files) in options.cores.items():
             if name == "tri_tri" and options.committed:
                 areas[name] = committed()
-            elif options.area:
+            elif options.area is not None:
                 areas[name] = measure(name, top, files, options)
     except (fpga.ToolError, check.BadFileError, OSError) as error:
         print(f"run.py: {error}", file=sys.stderr)
