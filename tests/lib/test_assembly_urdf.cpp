@@ -222,6 +222,11 @@ TEST_CASE("urdf: what urdfdom drops is an error", "[assembly][urdf]") {
   CHECK(contains(error(shape("<mesh filename=\"x.stl\" scale=\"1 0 1\"/>")), "flattens"));
   CHECK(contains(folder.error(robot(link("a") + link("a"))), "urdfdom says"));
   CHECK(contains(folder.error(robot("<xacro:include filename=\"x\"/>")), "xacro"));
+  // What xacro wrote may have macros in comments.
+  CHECK(folder
+            .error(robot(link("a") + "<!-- <xacro:include filename=\"x\"/> -->" + link("b") +
+                         joint("j", "fixed", "a", "b", "5 0 0", "")))
+            .empty());
   CHECK(contains(folder.error("nothing"), "; "));
 }
 
@@ -320,7 +325,16 @@ TEST_CASE("urdf: an SRDF allows pairs", "[assembly][urdf]") {
     }
     return std::string();
   };
-  CHECK(contains(error("<disable_collisions link1=\"a\" link2=\"z\"/>"), "robot.srdf:3: link2 is 'z'"));
+  const Assembly of_variants = folder.load(text, srdf("<disable_collisions link1=\"a\" link2=\"z\"/>\n"
+                                                      "<disable_collisions link1=\"c\" link2=\"b\"/>\n"));
+  CHECK(of_variants.rules.empty());
+  REQUIRE(of_variants.notes.size() == 1);
+  CHECK(contains(of_variants.notes[0], "robot.srdf:3: link2 is 'z', and the robot has no such link"));
+  const std::string apart = robot(link("a") + link("b") + link("c") + joint("j", "fixed", "a", "b", "5 0 0", "") +
+                                  joint("k", "fixed", "b", "c", "5 0 0", ""));
+  const Assembly never = folder.load(apart, srdf("<disable_collisions link1=\"c\" link2=\"a\" reason=\"Never\"/>\n"));
+  CHECK(never.rules.size() == 1);
+  CHECK(check(never).unused_rules.empty());  // it lists pairs that never meet, too
   CHECK(contains(error("<disable_collisions link1=\"a\""), "its XML is wrong"));
 }
 

@@ -68,7 +68,7 @@ std::vector<std::size_t> find_unused(const Assembly& assembly, const RuleBook& r
         return !used[i];
       });
     }
-    if (!used[i]) unused.push_back(i);
+    if (!used[i] && !assembly.rules[i].optional) unused.push_back(i);
   }
   return unused;
 }

@@ -187,7 +187,7 @@ class Loader {
     }
     assembly_.joints = robot.joints;
     leave_neighbours_out();
-    if (!options_.srdf.empty()) add_disabled(assembly::read_srdf(options_.srdf, robot.links));
+    if (!options_.srdf.empty()) add_disabled(assembly::read_srdf(options_.srdf, robot.links, assembly_.notes));
     try {
       for (const std::string& note : move_joints(assembly_, options_.joints)) {
         assembly_.notes.push_back(path + ": " + note);

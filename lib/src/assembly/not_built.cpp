@@ -41,7 +41,9 @@ Robot read_urdf(const std::string& path, const AssemblyLoadOptions&) {
                            ": is URDF, and this build of the library has no reader for it; build it with urdfdom "
                            "and pugixml (Debian's liburdfdom-dev and libpugixml-dev)");
 }
-std::vector<AssemblyRule> read_srdf(const std::string&, const std::vector<RobotLink>&) { return {}; }
+std::vector<AssemblyRule> read_srdf(const std::string&, const std::vector<RobotLink>&, std::vector<std::string>&) {
+  return {};
+}
 #endif
 
 }  // namespace cchip::assembly

@@ -32,7 +32,8 @@ Robot read_urdf(const std::string& path, const AssemblyLoadOptions& options);
 
 /// The pairs of disable_collisions, as rules.
 /// \throws std::runtime_error one line: file, what is wrong, what to do; also for a link that is not there
-std::vector<AssemblyRule> read_srdf(const std::string& path, const std::vector<RobotLink>& links);
+std::vector<AssemblyRule> read_srdf(const std::string& path, const std::vector<RobotLink>& links,
+                                    std::vector<std::string>& notes);
 
 /// Meshes that contain the shapes. Edges of a cylinder and corners of a sphere lie outside by at most 0.13 and 0.35 %
 /// of the radius.

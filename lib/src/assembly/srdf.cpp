@@ -12,7 +12,8 @@
 
 namespace cchip::assembly {
 
-std::vector<AssemblyRule> read_srdf(const std::string& path, const std::vector<RobotLink>& links) {
+std::vector<AssemblyRule> read_srdf(const std::string& path, const std::vector<RobotLink>& links,
+                                    std::vector<std::string>& notes) {
   const std::string content = mesh_io::read_file(path, "robot's SRDF");
   pugi::xml_document document;
   const pugi::xml_parse_result result = document.load_buffer(content.data(), content.size());
@@ -32,17 +33,19 @@ std::vector<AssemblyRule> read_srdf(const std::string& path, const std::vector<R
   for (const pugi::xml_node pair : robot.children("disable_collisions")) {
     AssemblyRule rule;
     rule.kind = AssemblyRule::Kind::anything;
+    rule.optional = true;
     rule.place = place_of(pair.offset_debug());
     for (const char* const key : {"link1", "link2"}) {
       const std::string name = one_line(pair.attribute(key).value());
       const bool known =
           std::any_of(links.begin(), links.end(), [&name](const RobotLink& link) { return link.name == name; });
-      if (!known) {
-        throw std::runtime_error(rule.place + ": " + key + " is '" + name +
-                                 "', and the robot has no such link; correct the name");
+      if (known) {
+        rule.parts.push_back(name);
+      } else {  // one file often serves several variants of a robot
+        notes.push_back(rule.place + ": " + key + " is '" + name + "', and the robot has no such link");
       }
-      rule.parts.push_back(name);
     }
+    if (rule.parts.size() < 2) continue;
     if (rule.parts[0] == rule.parts[1]) {
       throw std::runtime_error(rule.place + ": link1 and link2 are both '" + rule.parts[0] + "'; name two");
     }

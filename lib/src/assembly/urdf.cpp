@@ -10,9 +10,11 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <pugixml.hpp>
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -98,9 +100,20 @@ class UrdfReader {
     refuse("joint '" + one_line(name) + "': " + what);
   }
 
+  /// Elements of xacro, not in comments, which it leaves in what it writes.
+  static bool has_macros(const std::string& content) {
+    if (content.find("<xacro:") == std::string::npos) return false;
+    pugi::xml_document document;
+    document.load_buffer(content.data(), content.size());
+    return !document
+                .find_node(
+                    [](const pugi::xml_node& node) { return std::string_view(node.name()).substr(0, 6) == "xacro:"; })
+                .empty();
+  }
+
   urdf::ModelInterfaceSharedPtr parse() const {
     const std::string content = mesh_io::read_file(path_, "robot");
-    if (content.find("<xacro:") != std::string::npos) {
+    if (has_macros(content)) {
       refuse("has xacro macros, which are not read; write the robot out with `xacro robot.xacro > robot.urdf`");
     }
     urdf::ModelInterfaceSharedPtr model;
