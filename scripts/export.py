@@ -318,7 +318,7 @@ def chip_notes(top, mhz):
   `resetting` stays 1, memory has lost a response: only a reset of chip and bus helps, or a firewall or shutdown manager between them that completes the rest.
 - **Coherency**: `AXI_ARCACHE` = 3, `AXI_AWCACHE` = 2: normal memory, not cacheable; `AXI_PROT` = 0: secure. A coherent port wants others, see docs/hardware/uio.md; there is no `AxUSER`. Map images and rings uncached, or flush and invalidate as the programmer's guide says. A port
   that snoops (ACP, HPC) needs `AxCACHE` and `AxUSER` set in your wrapper, as that port asks.
-- **Records** are 16 bytes in one beat and must arrive whole: no bus narrower than 128 bit between chip and memory.
+- **Records** are 16 bytes in one beat. Behind a bus narrower than 128 bit the host sets `confirm_records`, see docs/hardware/programmers-guide.md.
 - **Size and clock**: default parameters after synthesis for ECP5: {size["sites"]} sites of LUT4, {size["FF"]} flip-flops, {size["DSP"]} multiplier blocks, {size["block RAM"]} block RAMs of 18 kbit. The constraints say {mhz:g} MHz, unless you chose
   another clock: it is that of the chip with the triangle test, routed for ECP5 grade 6 with one seed; with the quad test, or for another family, it was never routed. Begin lower.
 """  # noqa: E501  lines of what is written

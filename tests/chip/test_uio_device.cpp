@@ -406,6 +406,7 @@ TEST_CASE("driver in C: offsets and bits are those of the register map", "[syste
   CHECK(CHIP_RECORD_BASE_HIGH == regs::record_base_high::offset);
   CHECK(CHIP_RECORD_SIZE == regs::record_size::offset);
   CHECK(CHIP_RECORD_CONSUMER == regs::record_consumer::offset);
+  CHECK(CHIP_RECORD_PRODUCER == regs::record_producer::offset);
   CHECK(CHIP_INVALIDATE_FIRST == regs::invalidate_first::offset);
   CHECK(CHIP_INVALIDATE_LAST == regs::invalidate_last::offset);
   CHECK(CHIP_INVALIDATE == regs::invalidate::offset);

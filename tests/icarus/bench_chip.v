@@ -5,6 +5,8 @@
 //   +memory=FILE   contents of the memory from address 0 on, 16 bytes a line, hexadecimal: the query, then the images
 //   +records=FILE  expected records, the done record last; pair records may come in any order
 //   +start=S       state of the generator of memory's idle clocks, not 0 (default 1)
+//   +narrow=N      a port of 64 bits before the memory: a record's second half is there N clocks after its first; the
+//                  host takes a record when record_producer counts it (default 0: records arrive whole)
 // Last line: "query=1 records=N wrong=W clocks=K", K from the doorbell to the done record. Anything wrong is named
 // before it, and then Icarus ends with code 1.
 module bench_chip;
@@ -26,6 +28,7 @@ module bench_chip;
   localparam [11:0] REG_QUERY_SIZE = 12'h048, REG_QUERY_PRODUCER = 12'h04C;
   localparam [11:0] REG_RECORD_BASE_LOW = 12'h060, REG_RECORD_BASE_HIGH = 12'h064;
   localparam [11:0] REG_RECORD_SIZE = 12'h068, REG_RECORD_CONSUMER = 12'h06C;
+  localparam [11:0] REG_RECORD_PRODUCER = 12'h070;
   localparam [31:0] CONTROL_ENABLE = 32'd1, CONTROL_SOFT_RESET = 32'd2;
 
   reg clk = 0, rst = 1;
@@ -181,6 +184,8 @@ module bench_chip;
   // writes, one at a time: address, beats, response
   reg writing = 0, storing = 0;  // until the response; until the last beat
   integer write_word = 0, b;
+  integer narrow = 0, late = 0;  // clocks between halves; until the second one is there
+  reg [63:0] second = 0;
   always @(posedge clk) begin
     m_axi_awready <= !writing && !m_axi_awready && random[2];
     m_axi_wready  <= storing && random[3];
@@ -196,11 +201,23 @@ module bench_chip;
     end
     if (m_axi_wvalid && m_axi_wready) begin
       for (b = 0; b < DATA_W / 8; b = b + 1)
-      if (m_axi_wstrb[b]) memory[write_word][8*b+:8] = m_axi_wdata[8*b+:8];
-      write_word = write_word + 1;
+      if (m_axi_wstrb[b] && (narrow == 0 || b < 8)) memory[write_word][8*b+:8] = m_axi_wdata[8*b+:8];
+      if (narrow == 0) write_word = write_word + 1;
+      else begin
+        if (!m_axi_wlast || m_axi_wstrb != 16'hFFFF) fail("a record that is not one beat");
+        second = m_axi_wdata[127:64];
+        late   = narrow + 1;
+      end
       if (m_axi_wlast) begin
         m_axi_wready <= 1'b0;
         storing <= 1'b0;
+        if (narrow == 0) m_axi_bvalid <= 1'b1;
+      end
+    end
+    if (late != 0) begin
+      late = late - 1;
+      if (late == 0) begin
+        memory[write_word][127:64] = second;
         m_axi_bvalid <= 1'b1;
       end
     end
@@ -212,6 +229,7 @@ module bench_chip;
       m_axi_bvalid <= 1'b0;
       writing <= 1'b0;
       storing <= 1'b0;
+      late = 0;
     end
   end
 
@@ -260,6 +278,7 @@ module bench_chip;
   reg [DATA_W-1:0] expected[0:RECORDS-1];
   reg [RECORDS-1:0] found = 0;
   integer expectations = 0, records = 0, i, match;
+  integer confirmed = 0, halves = 0;  // by record_producer; looks at half a record
   reg [DATA_W-1:0] record;
   reg done = 0;
 
@@ -283,7 +302,7 @@ module bench_chip;
   integer doorbell = 0;
   initial begin
     if (!$value$plusargs("memory=%s", memory_file) || !$value$plusargs("records=%s", records_file))
-      fail("usage: +memory=FILE +records=FILE [+start=S]");
+      fail("usage: +memory=FILE +records=FILE [+start=S] [+narrow=N]");
     else begin
       for (i = 0; i < WORDS; i = i + 1) memory[i] = {DATA_W{1'b0}};
       $readmemh(memory_file, memory);
@@ -293,6 +312,7 @@ module bench_chip;
       if (expectations == RECORDS || expected[expectations][32] !== 1'b1) fail("no expected records");
       expectations = expectations + 1;
       if ($value$plusargs("start=%d", random) && random == 0) fail("start must not be 0");
+      if ($value$plusargs("narrow=%d", narrow) && narrow < 1) fail("narrow must be 1 or more");
     end
     if (wrong == 0) begin
       repeat (8) @(posedge clk);
@@ -316,8 +336,18 @@ module bench_chip;
       doorbell = clock;
       while (!done && records < RECORDS && clock - doorbell < PATIENCE) begin
         @(posedge clk);
-        #1 if (memory[RECORD_WORD+records][63]) take;
+        #1;
+        if (memory[RECORD_WORD+records][63]) begin
+          if (narrow != 0 && confirmed == records) begin
+            if (late != 0) halves = halves + 1;
+            get(REG_RECORD_PRODUCER);
+            confirmed = value;
+          end
+          if (narrow == 0 || confirmed != records) take;
+        end
       end
+      if (narrow != 0) $display("a phase bit was there before its record: %0d times", halves);
+      if (narrow != 0 && halves == 0) fail("no record was seen in halves");
       if (!done) fail("no done record");
       if (records != expectations) fail("records are missing");
       doorbell = clock - doorbell;

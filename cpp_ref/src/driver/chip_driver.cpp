@@ -270,7 +270,7 @@ class ChipDriver final : public QueryPort {
     machine_->write_register(regs::control::offset, regs::control::soft_reset_mask);
     if (!wait(regs::status::resetting_mask)) return false;
     written_ = taken_ = 0;
-    read_ = told_ = 0;
+    read_ = told_ = confirmed_ = 0;
     doorbell_ = false;
     quiet_ = 0;
     in_flight_ = 0;
@@ -316,6 +316,10 @@ class ChipDriver final : public QueryPort {
     const bool phase = (machine_->read_memory(at + 4, 4)[3] & 0x80U) != 0;
     const bool expected = (read_ >> options_.record_log2 & 1U) == 0;
     if (phase != expected) return std::nullopt;
+    if (options_.confirm_records && confirmed_ == read_) {
+      confirmed_ = machine_->read_register(regs::record_producer::offset);
+      if (confirmed_ == read_) return std::nullopt;
+    }
     const Bytes bytes = machine_->read_memory(at, static_cast<std::size_t>(record_bytes));
     RecordBytes record;
     std::copy(bytes.begin(), bytes.end(), record.begin());
@@ -350,6 +354,7 @@ class ChipDriver final : public QueryPort {
   std::uint64_t query_base_ = 0, record_base_ = 0;  // bytes
   std::uint32_t written_ = 0, taken_ = 0;           // queries written by the host, known to be taken by the chip
   std::uint32_t read_ = 0, told_ = 0;               // records read, given back
+  std::uint32_t confirmed_ = 0;                     // records that are whole in memory, with confirm_records
   bool doorbell_ = false;                           // queries were written that the chip does not know of
   std::uint64_t in_flight_ = 0;                     // queries
   std::uint64_t quiet_ = 0;                         // proceed() since the last record, or since there was a query

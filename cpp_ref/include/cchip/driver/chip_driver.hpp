@@ -32,6 +32,9 @@ struct ChipDriverOptions {
   /// Registers of the scheduler, which swaps by itself for pairs without a requested module: pairs, clocks.
   std::uint32_t minimum_batch = 64;
   std::uint32_t maximum_age = 4096;
+  /// Memory may show half of a record, as behind a port of 64 bits: wait until the register record_producer counts the
+  /// record, too. One read of the register for all records that it has counted.
+  bool confirm_records = false;
   /// QueryPort::proceed() says time-out after this many proceed() of the machine without a record.
   std::uint64_t patience = 20'000'000;
   /// recover() and the constructor give up after this many looks at a reset that does not end, store() at an
@@ -40,7 +43,7 @@ struct ChipDriverOptions {
 };
 
 /// Resets the chip softly, sets it up and enables it. Polls the ring of records in memory; registers are touched only
-/// to hand over queries and to give room back.
+/// to hand over queries, to give room back and, with confirm_records, to accept a record.
 /// \throws std::invalid_argument the memory is misplaced or too small for the rings, an option is out of range
 /// \throws std::runtime_error no cchip_chip of a known version answers, or its reset does not end
 std::unique_ptr<QueryPort> open_chip(std::unique_ptr<Machine> machine, const ChipDriverOptions& options = {});
