@@ -2,7 +2,7 @@
 # A block design around the packaged IP, without a processor: JTAG writes registers and memory, the chip reads queries
 # from a block RAM and writes records to it. For a board with DRAM put its memory controller in the place of `memory`,
 # for a Zynq its processor in the place of `host`.
-# NOT RUN BY THIS PROJECT: it has no Vivado. tests/vendor reads this file only.
+# NOT RUN BY THIS PROJECT: it has no Vivado. tests/vendor runs it with commands that only take notes.
 #
 #   vivado -mode batch -source scripts/vivado/package_ip.tcl
 #   vivado -mode batch -source scripts/vivado/example_bd.tcl [-tclargs NAME=VALUE...]
@@ -14,6 +14,7 @@
 #     out=build/vivado/bd        folder of the project
 # Registers: 0x44A00000, 4 KiB. Pins: sys_clk, sys_reset (active high), irq. Commands: UG994, options: UG835.
 source [file join [file dirname [file normalize [info script]]] .. vendor common.tcl]
+source [cchip::path scripts/vendor/block_design.tcl]
 
 set design cchip_example
 set settings [cchip::settings {
@@ -26,46 +27,7 @@ set settings [cchip::settings {
   out build/vivado/bd
 } $argv]
 dict with settings {}
-set repository [file normalize $repository]
-if {![file exists [file join $repository cchip_chip component.xml]]} {
-  error "repository=$repository: no cchip_chip/component.xml there, run scripts/vivado/package_ip.tcl"
-}
-set out [file normalize $out]
-file mkdir $out
-
-# A cell of the newest version of an IP, with its settings.
-proc cell {name ip args} {
-  set found [get_ipdefs -all -filter "VLNV =~ *:$ip:* && UPGRADE_VERSIONS == \"\""]
-  if {[llength $found] != 1} {
-    error "$ip: [llength $found] versions in the catalogue"
-  }
-  create_bd_cell -type ip -vlnv $found $name
-  if {[llength $args] > 0} {
-    set_property -dict $args [get_bd_cells $name]
-  }
-}
-
-# Joins two interface pins.
-proc bus {from to} {
-  connect_bd_intf_net [get_bd_intf_pins $from] [get_bd_intf_pins $to]
-}
-
-# Joins a pin to others.
-proc wire {from args} {
-  foreach to $args {
-    connect_bd_net [get_bd_pins $from] [get_bd_pins $to]
-  }
-}
-
-# Joins a port of the design to a pin.
-proc pin {port pin} {
-  connect_bd_net [get_bd_ports $port] [get_bd_pins $pin]
-}
-
-create_project -force $design [file join $out project] -part $part
-set_property ip_repo_paths [list $repository] [current_project]
-update_ip_catalog
-create_bd_design $design
+begin_design $design $part $repository $out
 
 create_bd_port -dir I -type clk -freq_hz [expr {$input_mhz * 1000000}] sys_clk
 create_bd_port -dir I -type rst sys_reset
@@ -106,19 +68,4 @@ assign_bd_address -offset 0x44A00000 -range 4096 \
   -target_address_space [get_bd_addr_spaces host/Data] [get_bd_addr_segs chip/s_axil/registers]
 exclude_bd_addr_seg -target_address_space [get_bd_addr_spaces chip/m_axi] [get_bd_addr_segs chip/s_axil/registers]
 
-validate_bd_design
-save_bd_design
-set file [get_files $design.bd]
-generate_target all $file
-add_files -norecurse [make_wrapper -files $file -top]
-set_property top ${design}_wrapper [current_fileset]
-update_compile_order -fileset sources_1
-if {$synthesise} {
-  launch_runs synth_1 -jobs 2
-  wait_on_run synth_1
-  if {[get_property PROGRESS [get_runs synth_1]] ne "100%"} {
-    error "synthesis has failed, see [file join $out project]"
-  }
-}
-close_project
-puts "cchip: block design $design in [file join $out project]"
+finish_design $design $out $synthesise

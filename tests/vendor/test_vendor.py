@@ -3,7 +3,7 @@
 """The scripts for Vivado and Quartus as far as they run without either, the ports of everything that takes turns in the
 partition, memories, and the static side in simulation.
 
-usage: test_vendor.py [Scripts|Ports|Static|Memories]...
+usage: test_vendor.py [Scripts|Designs|Ports|Static|Memories]...
 
 Environment: TCLSH, VERILATOR, YOSYS, IVERILOG, VVP = commands (default: found on PATH)."""
 import json
@@ -92,6 +92,106 @@ class Scripts(unittest.TestCase):
         self.assertEqual(sources.split(), [str(name) for name in files()])
         words = names.split()
         self.assertEqual({name: int(value) for name, value in zip(words[::2], words[1::2])}, personas())
+
+
+# Commands of Vivado that take notes: cells, nets, addresses. A command that is not here does nothing.
+NOTES = r"""
+proc note {args} {puts [join $args "|"]}
+proc create_bd_cell {args} {note cell [lindex $args end]}
+proc create_bd_port {args} {note port [lindex $args end]}
+proc create_bd_intf_port {args} {note port [lindex $args end]}
+proc get_ipdefs {args} {regexp {\*:(ip:)?(\w+):\*} $args -> - name; return vendor:ip:$name:1.0}
+proc get_bd_cells {name} {return $name}
+proc get_bd_ports {name} {return $name}
+proc get_bd_intf_ports {name} {return $name}
+proc get_bd_intf_pins {name} {return $name}
+proc get_bd_addr_spaces {name} {return $name}
+proc get_bd_addr_segs {name} {return $name}
+proc get_bd_pins {args} {
+  if {[lindex $args 0] eq "-quiet"} {return [expr {$::ultrascale ? [lindex $args 1] : ""}]}
+  return $args
+}
+proc connect_bd_net {from to} {note net $from $to}
+proc connect_bd_intf_net {from to} {note bus $from $to}
+proc set_property {args} {
+  if {[lindex $args 0] eq "-dict"} {foreach {name value} [lindex $args 1] {note config [lindex $args 2] $name $value}}
+}
+proc assign_bd_address {args} {
+  set given [lrange $args 0 end-1]
+  foreach name {-offset -range -target_address_space} {lappend values [dict get $given $name]}
+  note address {*}$values [lindex $args end]
+}
+proc unknown {name args} {
+  if {![string match {*_*} $name]} {error "no command $name"}
+}
+"""
+
+
+class Designs(unittest.TestCase):
+    """The block designs: each cell has its clock and its reset, no pin two drivers, the chip has its pins."""
+    CLOCKS = {"reset": {"slowest_sync_clk", "ext_reset_in", "dcm_locked"}, "chip": {"clk", "rst"},
+              "memory": {"s_axi_aclk", "s_axi_aresetn"}}
+    OF = {"example_bd": {"clock": {"clk_in1", "reset"}, "host": {"aclk", "aresetn"}, "fabric": {"aclk", "aresetn"}},
+          "example_xdma": {"clock": {"clk_in1"}, "host": {"sys_clk", "sys_rst_n", "usr_irq_req"},
+                           "fabric": {"aclk", "aclk1", "aresetn"}, "control": {"aclk", "aclk1", "aresetn"},
+                           "interrupt": {"clk", "d"}}}
+    BUSES = {"example_bd": 5, "example_xdma": 8}
+
+    def notes(self, name, ultrascale=0, *settings):
+        with tempfile.TemporaryDirectory() as folder:
+            packaged = pathlib.Path(folder, "ip/cchip_chip")
+            packaged.mkdir(parents=True)
+            (packaged / "component.xml").touch()
+            argv = " ".join([f"repository={folder}/ip", f"out={folder}/out", *settings])
+            script = pathlib.Path(folder, "notes.tcl")
+            script.write_text(f"{NOTES}\nset ultrascale {ultrascale}\nset argv {{{argv}}}\n"
+                              f"source {ROOT}/scripts/vivado/{name}.tcl\n")
+            return run(tool("tclsh"), script)
+
+    def check(self, name, ultrascale=0):
+        code, text = self.notes(name, ultrascale)
+        self.assertEqual(code, 0, text)
+        notes = [line.split("|") for line in text.splitlines() if "|" in line]
+        cells = {note[1] for note in notes if note[0] == "cell"}
+        outside = {note[1] for note in notes if note[0] == "port"}
+        nets = [note[1:] for note in notes if note[0] == "net"]
+        buses = [note[1:] for note in notes if note[0] == "bus"]
+        for pin in [pin for pair in nets + buses for pin in pair]:
+            self.assertIn(pin.split("/")[0], cells if "/" in pin else outside)
+        ends = [pin for pair in buses for pin in pair]
+        self.assertEqual(len(ends), len(set(ends)))
+        self.assertEqual(len(buses), self.BUSES[name])
+        joined = {pin for pair in nets for pin in pair} | set(ends)
+        self.assertEqual(outside - joined, set())
+        # an output of the design is the first of its net in the script, but no driver
+        driven = [to if "/" in from_ or from_ != "irq" else from_ for from_, to in nets]
+        self.assertEqual(len(driven), len(set(driven)), "a pin with two drivers")
+        for cell, pins in {**self.CLOCKS, **self.OF[name]}.items():
+            self.assertLessEqual({f"{cell}/{pin}" for pin in pins}, set(driven), cell)
+        header = (ROOT / "rtl/chip/cchip_chip.v").read_text().split("\n);")[0]
+        of_chip = set(re.findall(r"^ +(?:in|out)put +wire.*? (\w+),? *(?://.*)?$", header, re.M)) | {"s_axil", "m_axi"}
+        of_interrupt = {"clk", "d", "q"}
+        for pin in joined:
+            cell, _, pin_name = pin.partition("/")
+            if cell in ("chip", "interrupt"):
+                self.assertIn(pin_name, of_chip if cell == "chip" else of_interrupt)
+        memory = [note[1:4] for note in notes if note[0] == "address" and note[4] == "memory/S_AXI/Mem0"]
+        self.assertEqual(len(memory), 2)
+        self.assertEqual(memory[0][:2], memory[1][:2], "host and chip see the memory at one address")
+        self.assertIn("chip/m_axi", [space for _, _, space in memory])
+        return joined
+
+    def test_example_bd(self):
+        self.check("example_bd")
+
+    def test_example_xdma(self):
+        self.assertNotIn("host/sys_clk_gt", self.check("example_xdma"))
+        self.assertIn("host/sys_clk_gt", self.check("example_xdma", 1))
+
+    def test_chip_faster_than_xdma_is_refused(self):
+        code, text = self.notes("example_xdma", 0, "mhz=130")
+        self.assertEqual(code, 1)
+        self.assertIn("mhz=130 is above axi_mhz=125", text)
 
 
 class Ports(unittest.TestCase):
