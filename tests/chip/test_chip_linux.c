@@ -16,6 +16,7 @@ static ssize_t card_pwrite(int file, const void* from, size_t bytes, off_t offse
 #undef pread
 #undef pwrite
 
+#include <limits.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <sys/socket.h>
@@ -187,7 +188,7 @@ static void stop_thread(pthread_t thread) {
 
 /* ---- queries */
 
-enum { BY_POLLING, BY_INTERRUPT };
+enum { BY_POLLING, BY_INTERRUPT, BY_POINTERS };
 static const uint32_t LONG = 60000000; /* us; never reached by a test that passes */
 
 /* Asks so many queries, one by one. \returns those whose records are not the chip's; -1: a call has failed */
@@ -199,7 +200,7 @@ static int wrong_answers(struct chip* chip, int queries, int how) {
     int right = 1;
     if (chip_submit(chip, query) != CHIP_OK) return -1;
     for (uint32_t k = 0; !chip_is_done(&record); ++k) {
-      const int code = how == BY_POLLING ? chip_next(chip, &record) : chip_wait(chip, &record, LONG);
+      const int code = how == BY_INTERRUPT ? chip_wait(chip, &record, LONG) : chip_next(chip, &record);
       if (code != CHIP_OK) return -1;
       right = right && record.tag == tag;
       if (chip_is_done(&record)) {
@@ -337,11 +338,17 @@ static void test_mapped(void) {
   if (socketpair(AF_UNIX, SOCK_STREAM, 0, both) != 0) abort();
   card.event = both[0];
   identify();
-  for (int how = BY_POLLING; how <= BY_INTERRUPT; ++how) {
+  for (int how = BY_POLLING; how <= BY_POINTERS; ++how) {
     struct chip_linux l;
     CHECK(chip_open_uio(&l, path("uio0"), path("memory"), 4096, MEMORY_BYTES) == 0);
     CHECK(l.events < 0); /* the file is not UIO's */
     struct chip chip = {.address = ADDRESS, .port = &l.port, .limit_us = LONG, .confirm_records = 1};
+    if (how == BY_POINTERS) {
+      chip.port = NULL;
+      chip.registers = card.registers;
+      chip.memory = card.memory;
+      chip.patience = ULONG_MAX;
+    }
     reset_card();
     card.armed = 0;
     REG(CHIP_STATUS) = CHIP_STATUS_RESETTING; /* until the thread has seen the reset */
