@@ -107,8 +107,79 @@ module cchip_async_fifo_properties #(
 
   wire [POINTER_W-1:0] write_change = write_gray ^ write_gray_q;
   wire [POINTER_W-1:0] read_change = read_gray ^ read_gray_q;
-`ifdef NO_RESET
-  always @(*) assume (!s_rst && !m_rst);
+`ifdef INVARIANT
+  // What holds on every step, so that the beats are proved for all time. The .sby file joins the wires with `keep` to the
+  // queue's own signals; the ^ keeps a cell between, so that only they are joined. Written for DEPTH 4.
+  (* keep *) wire [POINTER_W-1:0] write;
+  (* keep *) wire [POINTER_W-1:0] read;
+  (* keep *) wire [2*POINTER_W-1:0] s_pointers;
+  wire [5:0] s_pointer_view = s_pointers ^ 6'd0;
+  (* keep *) wire [2*POINTER_W-1:0] m_pointers;
+  wire [5:0] m_pointer_view = m_pointers ^ 6'd0;
+  (* keep *) wire [3:0] s_states;
+  wire [3:0] s_state_view = s_states ^ 4'd0;
+  (* keep *) wire [3:0] m_states;
+  wire [3:0] m_state_view = m_states ^ 4'd0;
+  (* keep *) wire [DEPTH*WIDTH-1:0] words;  // of the memory: cchip_async_fifo.sby
+
+  function [POINTER_W-1:0] binary(input [POINTER_W-1:0] code);
+    binary = {code[2], code[2] ^ code[1], code[2] ^ code[1] ^ code[0]};
+  endfunction
+  function [4:0] distance(input [POINTER_W-1:0] from, input [POINTER_W-1:0] to);
+    reg [POINTER_W-1:0] d;
+    begin
+      d = to - from;
+      distance = {2'b00, d};
+    end
+  endfunction
+  localparam [4:0] FULL = DEPTH;
+  localparam [1:0] STOP = 2'b00, LEAVE = 2'b10;
+  // a pointer, and as its two flip-flops on the other side show it
+  wire [POINTER_W-1:0] w = binary(write_gray), r = binary(read_gray);
+  wire [POINTER_W-1:0] w_0 = binary(m_pointer_view[0+:POINTER_W]), w_1 = binary(m_pointer_view[POINTER_W+:POINTER_W]);
+  wire [POINTER_W-1:0] r_0 = binary(s_pointer_view[0+:POINTER_W]), r_1 = binary(s_pointer_view[POINTER_W+:POINTER_W]);
+  wire [1:0] s_0 = m_state_view[1:0], s_1 = m_state_view[3:2], m_0 = s_state_view[1:0], m_1 = s_state_view[3:2];
+  // the registers above after this step
+  wire [3:0] count_d = m_left ? {3'd0, m_valid} : left + {3'd0, push & ~broken_q};
+  wire broken_d = m_left | (broken_q & ~s_cleared);
+  wire taken = !m_left && push && !broken_q && !tracked_q && pick;
+  wire tracked_d = m_left ? tracked_q && !hit && ahead == 4'd0 && m_valid : (tracked_q & ~hit) | taken;
+  wire [3:0] ahead_d = taken ? left : ahead;
+  wire [WIDTH-1:0] word_d = taken ? s_data_q : word_q;
+  wire first = ahead_d == 4'd0 && m_valid;
+  wire [1:0] place = r[1:0] + ahead_d[1:0] - {1'b0, m_valid};
+  always @(posedge step)
+    if (started_q) begin
+      if (s_state != STOP) i_write: assert (w == write);
+      if (m_state != STOP) i_read: assert (r == read);
+      if (s_state == CLEAR) i_write_0: assert (write == 0 && write_gray == 0);
+      if (m_state == CLEAR) i_read_0: assert (read == 0 && read_gray == 0);
+      if (s_0 == CLEAR) i_w_0: assert (w_0 == 0);
+      if (s_1 == CLEAR) i_w_1: assert (w_1 == 0);
+      if (m_0 == CLEAR) i_r_0: assert (r_0 == 0);
+      if (m_1 == CLEAR) i_r_1: assert (r_1 == 0);
+      // in their order, and together no longer than the memory
+      if (m_state[1] || (m_state == CLEAR && s_1 != STOP))
+        i_m_order: assert (distance(r, w_1) + distance(w_1, w_0) + distance(w_0, w) <= FULL);
+      if (m_state == CLEAR && s_0 != STOP) i_m_order_0: assert (distance(r, w_0) + distance(w_0, w) <= FULL);
+      if (m_state == CLEAR && s_state != STOP) i_m_order_now: assert (distance(r, w) <= FULL);
+      if (s_state[1] || (s_state == CLEAR && m_1 != STOP))
+        i_s_order: assert (distance(r_1, r_0) + distance(r_0, r) + distance(r, w) <= FULL);
+      if (s_state == CLEAR && m_0 != STOP) i_s_order_0: assert (distance(r_0, r) + distance(r, w) <= FULL);
+      if (s_state == CLEAR && m_state[1]) i_s_first: assert (r == 0 && w_0 == 0 && w_1 == 0);
+      if (m_state == CLEAR && s_state[1]) i_m_first: assert (r_0 == 0 && r_1 == 0);
+      if (s_ready) i_ready: assert (s_state[1] && distance(r_1, w) < FULL);
+      // what is inside
+      if (m_state == LEAVE) i_left: assert (broken_d);
+      if (m_state == RUN) i_runs: assert (!broken_d);
+      if (!broken_d && m_state == STOP) i_stop: assert (w == 0 && s_state == CLEAR);
+      if (broken_d || m_state == STOP) i_none: assert (count_d == {3'd0, m_valid});
+      else i_count: assert (count_d == distance(r, w) + {3'd0, m_valid});
+      if (tracked_d) begin
+        i_ahead: assert (ahead_d < count_d);
+        i_word: assert (word_d == (first ? m_data : words[place*WIDTH+:WIDTH]));
+      end
+    end
 `endif
 
 `ifdef COVER
