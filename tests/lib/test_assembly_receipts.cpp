@@ -135,6 +135,8 @@ TEST_CASE("receipts: a proof of each verdict", "[assembly][receipts]") {
   CHECK(state(small, cube, shifted(0, 0, 0), RuleKind::inside) == State::proved);
   CHECK(state(small, cube, shifted(2, 0, 0), RuleKind::inside) == State::violation);
   CHECK(state(cube, cube, shifted(0, 0, 0), RuleKind::same) == State::proved);
+  CHECK(state(cube, box({0, 0, 0}, {1, 1, 1}), shifted(0, 0, 0), RuleKind::same) == State::proved);
+  CHECK(state(cube, cube, shifted(1, 0, 0), RuleKind::same) == State::unproved);  // a contact is no violation of it
   CHECK(state(cube, cube, shifted(0, 0, 0), RuleKind::nothing) == State::violation);
   CHECK(state(cube, cube, shifted(1.5, 0, 0), RuleKind::clearance, 0.5) == State::proved);  // exactly
   CHECK(state(cube, cube, shifted(1.5, 0, 0), RuleKind::clearance, std::nextafter(0.5, 1)) == State::violation);

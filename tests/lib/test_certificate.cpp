@@ -585,7 +585,7 @@ TEST_CASE("certificate: answers about distances are certified and accepted", "[l
   std::mt19937_64 random = generator(9);
   const auto device = open_cpu_device({1, ""});
   std::map<std::string, int> kinds;
-  for (int n = 0; n < 100; ++n) {
+  for (int n = 0; n < 60; ++n) {
     const std::array<Placed, 2> pair = random_pair(random);
     const Object a(pair[0].mesh), b(pair[1].mesh);
     const CollisionQuery query = {&a, &pair[0].pose, &b, &pair[1].pose};
@@ -648,7 +648,7 @@ void mutate_certificates(int pairs, std::mt19937_64& random) {
 
 TEST_CASE("certificate: what was changed is accepted only where it is true", "[lib][certificate]") {
   std::mt19937_64 random = generator(2);
-  mutate_certificates(100, random);
+  mutate_certificates(70, random);
 }
 
 TEST_CASE("certificate: a hundred thousand changes", "[.mutations]") {

@@ -86,8 +86,9 @@ class Verifier {
     if (now.mesh_a != receipt.mesh_a) return {ReceiptState::stale, "the mesh of " + a_.name + " is another one"};
     if (now.mesh_b != receipt.mesh_b) return {ReceiptState::stale, "the mesh of " + b_.name + " is another one"};
     if (now.poses != receipt.poses) return {ReceiptState::stale, "the poses are others"};
-    if (kind_ == RuleKind::same && now.mesh_a == now.mesh_b && is_same_place()) {
-      return {ReceiptState::proved, "are the same mesh in the same place"};
+    if (kind_ == RuleKind::same) {
+      if (is_same_mesh_and_place()) return {ReceiptState::proved, "are the same mesh in the same place"};
+      return {ReceiptState::unproved, "whether they are the same does not follow from a receipt"};
     }
     if (receipt.common_point) return look_at_point(*receipt.common_point);
     if (receipt.file.empty()) return {ReceiptState::unproved, "no proof was found"};
@@ -95,9 +96,15 @@ class Verifier {
   }
 
  private:
-  bool is_same_place() const {
-    return hash_poses(a_.pose, a_.pose) == hash_poses(b_.pose, b_.pose) && a_.pose.matrix() == b_.pose.matrix() &&
-           hash_mesh(a_.object.mesh()) == hash_mesh(b_.object.mesh());
+  /// By their numbers, not by hashes.
+  bool is_same_mesh_and_place() const {
+    const Mesh& a = a_.object.mesh();
+    const Mesh& b = b_.object.mesh();
+    const auto is_same = [](const Mesh::Face& x, const Mesh::Face& y) {
+      return x.kind == y.kind && x.vertex == y.vertex;
+    };
+    return a_.pose.matrix() == b_.pose.matrix() && a.vertices == b.vertices &&
+           std::equal(a.faces.begin(), a.faces.end(), b.faces.begin(), b.faces.end(), is_same);
   }
 
   Finding look_at_point(const Vec3d& point) const {
@@ -141,7 +148,6 @@ class Verifier {
       }
     }
     if (kind_ == RuleKind::inside) return look_at_inside(c);
-    if (kind_ == RuleKind::same) return {ReceiptState::unproved, "whether they are the same does not follow"};
     if (is_strict ? is_clear(c) : shares_no_volume(c, b_.pose)) {
       return {ReceiptState::proved, is_strict ? "are apart" : "share no volume"};
     }
