@@ -38,7 +38,7 @@ Try it (make sim installs and builds first, eight minutes in all)
 Use the library
   build install wheel export
 Check a change
-  test test-lib/3_min test-long test-python formal lint format
+  test test-lib/11_min test-long test-python formal lint format
 Read
   help docs
 Tools
