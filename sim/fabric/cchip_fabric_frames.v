@@ -36,17 +36,15 @@ module cchip_fabric_frames #(
   reg [4:0] column_q;
   reg [19:0] select_q;
   reg strobe_q, allowed_q, error_q;
-  initial begin
-    state_q  = WAIT;
-    strobe_q = 1'b0;
-    error_q  = 1'b0;
-  end
+  initial state_q = WAIT;
+  initial strobe_q = 1'b0;
+  initial error_q = 1'b0;
 
   wire [31:0] word = {cfg_data[7:0], cfg_data[15:8], cfg_data[23:16], cfg_data[31:24]};
   wire [31:0] column = {27'd0, word[31:27]};
   wire one_frame = word[19:0] != 20'd0 && (word[19:0] & (word[19:0] - 20'd1)) == 20'd0;
-  wire inside = column >= FIRST && column <= LAST;
-  wire allowed = one_frame && (inside || !fenced);
+  wire is_inside = column >= FIRST && column <= LAST;
+  wire allowed = one_frame && (is_inside || !fenced);
   // the next frame's address comes on the clock of the strobe
   reg [4:0] next_column_q;
   reg [19:0] next_select_q;
