@@ -9,6 +9,7 @@ common/cchip_async_fifo.v
 common/cchip_level_crossing.v
 common/cchip_axi_cdc.v
 common/cchip_axil_cdc.v
+common/cchip_apb_axil.v
 common/cchip_ram.v
 common/cchip_dual_ram.v
 common/cchip_block_ram.v

@@ -124,6 +124,7 @@ ILLEGAL = [
     ("cchip_cross3", {"E_W": 53}, MUL_WIDE),
     *(("cchip_async_fifo", {"DEPTH": n}, ASYNC) for n in (0, 2, 6, 8192)),
     *(("cchip_async_fifo", {name: n}, ASYNC_W) for name, n in (("WIDTH", 0), ("STAGES", 1), ("STAGES", 5))),
+    ("cchip_apb_axil", {"ADDRESS_W": 0}, "cchip_error_apb_axil_ADDRESS_W_below_1"),
     ("cchip_synchroniser", {"WIDTH": 0}, SYNC),
     *(("cchip_icap", {"FAMILY": n}, ICAP) for n in (6, 9)),
     *(("cchip_icap", {"PAUSE": n}, PAUSE) for n in (15, 65536)),
