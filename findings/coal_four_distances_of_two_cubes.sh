@@ -6,7 +6,7 @@
 # anything: a gap of 0.4, no contact. Outer solid, inner mesh: a contact, -0.4, the deepest single triangle. Both solid: -0.6,
 # the way out. So exchanging the mesh of one part for its exact box or hull turns "free, 0.4 apart" into "deep inside", and
 # exchanging the other part does not. Equal cubes, in one place: 0 as soon as one is a mesh, and -1 if neither is.
-# Seen (inner size, outer, inner, distance, contact): "0.2 mesh box 0.4 False", "0.2 box mesh -0.4 True", "0.2 box box -0.6 True".
+# Seen (with the contact): "0.2 in mesh: mesh 0.4 False, box 0.4 False ...", "0.2 in box: mesh -0.4 True, box -0.6 True ...".
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -41,31 +41,21 @@ def cube(kind, size):
 
 
 place = coal.Transform3s()
-for size in (0.2, 1.0):
-    for outer, inner in itertools.product(("mesh", "box", "hull"), repeat=2):
+for size, outer in itertools.product((0.2, 1.0), ("mesh", "box", "hull")):
+    line = []
+    for inner in ("mesh", "box", "hull"):
         pair = cube(outer, 1.0), place, cube(inner, size), place
         distance = coal.distance(*pair, coal.DistanceRequest(), coal.DistanceResult())
         contact = coal.collide(*pair, coal.CollisionRequest(), coal.CollisionResult()) > 0
-        print(size, outer, inner, round(distance, 3) + 0.0, contact)
+        line.append(f"{inner} {round(distance, 3) + 0.0} {contact}")
+    print(f"{size} in {outer}:", ", ".join(line))
 END
 venv/bin/python probe.py | tee seen
 diff seen - << 'END'
-0.2 mesh mesh 0.4 False
-0.2 mesh box 0.4 False
-0.2 mesh hull 0.4 False
-0.2 box mesh -0.4 True
-0.2 box box -0.6 True
-0.2 box hull -0.6 True
-0.2 hull mesh -0.4 True
-0.2 hull box -0.6 True
-0.2 hull hull -0.6 True
-1.0 mesh mesh 0.0 True
-1.0 mesh box 0.0 True
-1.0 mesh hull 0.0 True
-1.0 box mesh 0.0 True
-1.0 box box -1.0 True
-1.0 box hull -1.0 True
-1.0 hull mesh 0.0 True
-1.0 hull box -1.0 True
-1.0 hull hull -1.0 True
+0.2 in mesh: mesh 0.4 False, box 0.4 False, hull 0.4 False
+0.2 in box: mesh -0.4 True, box -0.6 True, hull -0.6 True
+0.2 in hull: mesh -0.4 True, box -0.6 True, hull -0.6 True
+1.0 in mesh: mesh 0.0 True, box 0.0 True, hull 0.0 True
+1.0 in box: mesh 0.0 True, box -1.0 True, hull -1.0 True
+1.0 in hull: mesh 0.0 True, box -1.0 True, hull -1.0 True
 END
