@@ -24,7 +24,9 @@ module top;
     end
 endmodule
 END
-echo 'module top; parameter N = 3; initial $display("%0d", 1 << N); endmodule' > shift.v
+cat > shift.v << 'END'
+module top; parameter N = 3; initial $display("%0d", 1 << N); endmodule
+END
 for number in 16 "'h10" 0x10 010 4294967296; do
     echo "N=$number"
     iverilog -g2012 "-Ptop.N=$number" -o top.vvp top.v
