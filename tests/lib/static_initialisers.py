@@ -12,7 +12,8 @@ import sys
 # of urdfdom include <iostream>, whose initialiser makes the standard streams.
 ALLOWED = {"along.cpp", "behind_plane.cpp", "certify.cpp", "common_part.cpp", "cut_polygon.cpp", "distance.cpp",
            "edges.cpp", "grid_oracle.cpp", "intersection.cpp", "meeting.cpp", "oracle.cpp", "pair_proof.cpp",
-           "posed_distances.cpp", "shells.cpp", "solid_side.cpp", "solids.cpp", "urdf.cpp"}
+           "posed_distances.cpp", "shells.cpp", "solid_rays.cpp", "solid_side.cpp", "solids.cpp", "urdf.cpp",
+           "verify_receipts.cpp"}
 
 INITIALISER = r"_GLOBAL__sub_I|__static_initialization_and_destruction|__cxx_global_var_init"
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "parting_way.hpp"
-#include "solid_rays.hpp"
+#include "solid_points.hpp"
 
 namespace cchip::assembly {
 namespace {

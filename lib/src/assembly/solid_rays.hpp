@@ -4,10 +4,11 @@
 #ifndef CCHIP_ASSEMBLY_SOLID_RAYS_HPP
 #define CCHIP_ASSEMBLY_SOLID_RAYS_HPP
 
-#include <cchip/assembly.hpp>
 #include <cchip/internal/certificate/exact_points.hpp>
-#include <cstdint>
+#include <cchip/mesh.hpp>
 #include <vector>
+
+#include "solid_points.hpp"
 
 namespace cchip::assembly {
 
@@ -20,12 +21,6 @@ struct PointSide {
 /// \param points of the vertices of the mesh, as exact as `at`
 PointSide side_of(const certificate_check::Point& at, const Mesh& mesh,
                   const std::vector<certificate_check::Point>& points);
-
-/// The number of a vertex of each piece of a mesh; pieces hang together by vertices in the same place.
-std::vector<std::uint32_t> vertex_of_each_piece(const Mesh& mesh);
-
-/// Is the point, of the world, inside both parts, by the same rule?
-bool is_common_point(const Vec3d& point, const AssemblyPart& a, const AssemblyPart& b);
 
 }  // namespace cchip::assembly
 

@@ -15,7 +15,7 @@
 #include "parting_way.hpp"
 #include "receipt_file.hpp"
 #include "run_all.hpp"
-#include "solid_rays.hpp"
+#include "solid_points.hpp"
 
 namespace cchip {
 namespace {
