@@ -48,7 +48,8 @@ struct AssemblyRule {
   double limit = 0;         ///< in units of the assembly
   std::string reason = {};  ///< for people; Kind::anything must have one
   std::string place = {};   ///< "file:line", for messages
-  bool optional = false;    ///< not reported if it never counts, as those of an SRDF, which lists what may not meet at all
+  bool optional =
+      false;  ///< not reported if it never counts, as those of an SRDF, which lists what may not meet at all
 };
 /// The name of the enumerator, such as "touching".
 const char* name_of(AssemblyRule::Kind kind);
