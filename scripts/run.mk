@@ -36,7 +36,7 @@ Check for long
   campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-collide campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
   campaign-geometry/hours campaign-swaps campaign-cluster campaign-chip/hours campaign-chip-faults campaign-chip-swaps proof-campaign
 Measure
-  bench-reconfig bench-collide/10_min bench-distance bench-robot bench-scene/3_min bench-certificate bench-python/1_min bench-clash/1_min bench-sat bench-chip/30_min fpga/hours fpga-quick fpga-sweep/hours asic asic-quick
+  bench-reconfig bench-collide/10_min bench-distance bench-robot bench-scene/3_min bench-certificate bench-python/1_min bench-clash bench-sat bench-chip/30_min fpga/hours fpga-quick fpga-sweep/hours asic asic-quick
 Tools
   peers robots
 endef

@@ -21,7 +21,7 @@ struct ReceiptOptions {
 };
 
 /// Proves the verdicts of a report and writes the receipts. A folder that holds receipts gets these in their place.
-/// Takes some 20 ms for each 10,000 faces of a pair that is not far apart.
+/// Takes far longer than check(): certify() for each pair that is not far apart.
 /// \param report of check() for this assembly
 /// \throws std::runtime_error the folder cannot be written, or holds something else than receipts
 /// \throws std::invalid_argument as check()

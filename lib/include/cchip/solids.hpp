@@ -68,7 +68,7 @@ enum class PointPlace { outside, on_surface, inside };
 /// The name of the enumerator, such as "on_surface".
 const char* name_of(PointPlace place);
 
-/// Where points are to a placed solid; exactly, in real arithmetic. Takes some 10 us a point.
+/// Where points are to a placed solid; exactly, in real arithmetic.
 /// \param points in the world
 /// \param threads 0: as many as there are cores
 /// \throws as solids(); std::invalid_argument as PointCloud
