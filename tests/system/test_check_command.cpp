@@ -143,7 +143,7 @@ TEST_CASE("check: hostile files and wrong options end with a line and exit code 
   refuses_text("\xff\xfe", "certificate, line 1: ");
   refuses_text(std::string("\0\0", 2), "certificate, line 1: ");
   refuses_text(text + "{\"cell\":\"magic\"}\n", "certificate, line 3: unknown word");
-  refuses_text(replaced(text, "certificate\":1", "certificate\":2"),
+  refuses_text(replaced(text, "certificate\":1", "certificate\":3"),
                "line 1: no certificate, or another version of it");
   refuses_text(text + "[1]\n", "certificate, line 3: ");
   refuses({"check", cube_file, cube_file, folder.path("none")}, "none: the file cannot be read");
