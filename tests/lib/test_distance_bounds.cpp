@@ -64,15 +64,23 @@ Vec3d axis(std::mt19937_64& random) {
   return std::ldexp(1.0, static_cast<int>(random() % 5) * 40 - 80) * vector(random);
 }
 
+std::vector<simd::DistanceKernels> all_kernels() {
+  std::vector<simd::DistanceKernels> kernels;
+  for (const std::string& target : simd_targets()) kernels.push_back(simd::distance_kernels(target));
+  return kernels;
+}
+
+constexpr float any = 1e15F;
+
 }  // namespace
 
 TEST_CASE("distance bounds: gaps along a frame and a line", "[lib][distance]") {
   std::mt19937_64 random(sim::seed_from_environment() + 60);
-  std::vector<simd::DistanceKernels> kernels;
-  for (const std::string& target : simd_targets()) kernels.push_back(simd::distance_kernels(target));
+  const std::vector<simd::DistanceKernels> kernels = all_kernels();
   int tight_faces = 0;
   int tight_slabs = 0;
   int tight = 0;
+  int tight_on_line = 0;
   int apart = 0;
   for (int i = 0; i < 6000; ++i) {
     const Mesh mesh_a = mesh_of_one_face(random, std::ldexp(1.0, static_cast<int>(random() % 3) * 15 - 15));
@@ -97,20 +105,13 @@ TEST_CASE("distance bounds: gaps along a frame and a line", "[lib][distance]") {
     for (int k = 0; k < 4; ++k) {
       const Vec3d n = k == 0 ? Vec3d(near.point_b - near.point_a) : axis(random);
       frame.set_axis(n);
-      const FrameGap::Line line = frame.line(n);
-      const double by_lines = frame(frame.reach_a(line_a), frame.reach_b(line_b));
-      const double by_faces = frame(frame.reach_a(mesh_a.primitive(0)), frame.reach_b(mesh_b.primitive(0)));
-      const double on_line = FrameGap::gap(line, FrameGap::reach_a(line, line_a), FrameGap::reach_b(line, line_b));
-      CAPTURE(i, k, n.transpose(), by_lines, by_faces, on_line, root, sim::seed_from_environment());
-      for (const double bound : {by_lines, by_faces, on_line}) REQUIRE(compare(square, bound, unit_bits) >= 0);
-      tight += root > 0 && by_faces > root * (1 - 1e-9) ? 1 : 0;
+      CAPTURE(i, k, n.transpose(), root, sim::seed_from_environment());
       simd::DistanceFrame single;
       const double unit = frame.in_single(single);
       for (const simd::DistanceKernels& kernel : kernels) {
         simd::NodeGaps gaps;
         simd::FaceGaps faces;
-        constexpr float any = 1e15F;
-        REQUIRE(kernel.nodes(single, &line_a, 1, &line_b, 1, any, gaps) == 1);
+        REQUIRE(kernel.nodes(single, &line_a, 1, &line_b, 1, 0, any, gaps) == 1);
         const double in_single = std::sqrt(static_cast<double>(gaps.square[0])) * unit;
         const double by_slabs = frame.slab_gap(frame.slab_a(line_a, gaps.a[0]), frame.slab_b(line_b, gaps.b[0])) * unit;
         REQUIRE(kernel.leaves(single, a.tree().vertices(line_a.ref().first()), line_a.ref(),
@@ -122,6 +123,7 @@ TEST_CASE("distance bounds: gaps along a frame and a line", "[lib][distance]") {
           if (bound > 0) REQUIRE(compare(square, bound, unit_bits) >= 0);
         }
         if (upper < std::numeric_limits<double>::infinity()) REQUIRE(compare(square, upper, unit_bits) <= 0);
+        (k == 0 ? tight : tight_on_line) += root > 0 && in_single > 0.99 * root ? 1 : 0;
         tight_faces += root > 0 && lower > 0.999 * root && upper < 1.001 * root ? 1 : 0;
         tight_slabs += root > 0 && by_slabs > 0.9 * root ? 1 : 0;
         // Beyond a limit, too, a lower bound stays one.
@@ -133,12 +135,14 @@ TEST_CASE("distance bounds: gaps along a frame and a line", "[lib][distance]") {
       }
     }
   }
-  std::cout << "apart=" << apart << " tight=" << tight << " tight_faces=" << tight_faces
-            << " tight_slabs=" << tight_slabs << '\n';
+  std::cout << "apart=" << apart << " tight=" << tight << " tight_on_line=" << tight_on_line
+            << " tight_faces=" << tight_faces << " tight_slabs=" << tight_slabs << '\n';
   CHECK(tight_faces > 10000);
   CHECK(tight_slabs > 1000);
   CHECK(apart > 3000);
-  CHECK(tight > 1000);  // a bound that is never near the distance would prove little
+  // Bounds that are never near the distance would prove little.
+  CHECK(tight > 1000);
+  CHECK(tight_on_line > 1000);
 }
 
 TEST_CASE("distance bounds: gaps of near objects, far from their origins", "[lib][distance]") {
@@ -149,6 +153,7 @@ TEST_CASE("distance bounds: gaps of near objects, far from their origins", "[lib
   const Vec3d u(3, -2, 0);
   const Vec3d v(0, 2, -1);
   const Pose here = Pose::Identity();
+  const std::vector<simd::DistanceKernels> kernels = all_kernels();
   int tight = 0;
   for (int i = 0; i < 1200; ++i) {
     const auto part = [&random](int bits) {
@@ -167,38 +172,114 @@ TEST_CASE("distance bounds: gaps of near objects, far from their origins", "[lib
     const Object a(is_swapped ? mesh_b : mesh_a);
     const Object b(is_swapped ? mesh_a : mesh_b);
     FrameGap frame(a, here, b, here);
-    frame.set_axis(normal);
-    const auto gap = [&] { return frame(frame.reach_a(a.mesh().primitive(0)), frame.reach_b(b.mesh().primitive(0))); };
-    const double bound = gap();
-    CAPTURE(i, bound, distance, sim::seed_from_environment());
-    REQUIRE(bound <= distance);
-    tight += bound > 0.5 * distance ? 1 : 0;
+    frame.set_axis(i % 3 == 0 ? Vec3d(vector(random)) : normal);
     // A zero vector is refused, and the axes stay.
-    frame.set_axis(Vec3d::Zero());
-    REQUIRE(gap() == bound);
+    if (i % 3 == 1) frame.set_axis(Vec3d::Zero());
+    simd::DistanceFrame single;
+    const double unit = frame.in_single(single);
+    const bvh::SupportLine& line_a = a.tree().lines()[a.tree().root().first()];
+    const bvh::SupportLine& line_b = b.tree().lines()[b.tree().root().first()];
+    for (const simd::DistanceKernels& kernel : kernels) {
+      simd::NodeGaps gaps;
+      simd::FaceGaps faces;
+      REQUIRE(kernel.nodes(single, &line_a, 1, &line_b, 1, 0, any, gaps) == 1);
+      REQUIRE(kernel.leaves(single, a.tree().vertices(line_a.ref().first()), line_a.ref(),
+                            b.tree().vertices(line_b.ref().first()), line_b.ref(), any, faces));
+      const double by_nodes = std::sqrt(static_cast<double>(gaps.square[0])) * unit;
+      const double lower = faces.lower[0] * unit;
+      const double upper = faces.upper[0] * unit;
+      CAPTURE(i, by_nodes, lower, upper, distance, sim::seed_from_environment());
+      REQUIRE(by_nodes <= distance);
+      REQUIRE(lower <= distance);
+      REQUIRE(upper >= distance);
+      tight += upper - lower < 64 * 0x1p-24 * unit ? 1 : 0;
+    }
   }
   CHECK(tight > 800);
 }
 
-TEST_CASE("distance bounds: gaps on a line, for any length of the axis", "[lib][distance]") {
-  Mesh mesh;
-  add_face(mesh, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
-  const Object face(mesh);
-  const Pose here = Pose::Identity();
-  Pose there = here;
-  there.translation().z() = 2;
-  const FrameGap frame(face, here, face, there);
-  const bvh::SupportLine& node = face.tree().lines()[face.tree().root().first()];
-  for (int exponent = -1074; exponent <= 1020; ++exponent) {
-    const FrameGap::Line line = frame.line(std::ldexp(1, exponent) * Vec3d(0, 0, 1));
-    const double gap = FrameGap::gap(line, FrameGap::reach_a(line, node), FrameGap::reach_b(line, node));
-    CAPTURE(exponent, gap);
-    CHECK(gap >= 0);
-    CHECK(gap <= 2);
-    if (std::abs(exponent) < 200) CHECK(gap > 1.99);
+TEST_CASE("distance bounds: four nodes against four", "[lib][distance]") {
+  std::mt19937_64 random(sim::seed_from_environment() + 68);
+  const std::vector<simd::DistanceKernels> kernels = all_kernels();
+  const auto faces_below = [](const Object& object, bvh::NodeRef node) {
+    std::vector<std::uint32_t> faces;
+    const std::function<void(bvh::NodeRef)> visit = [&](bvh::NodeRef at) {
+      for (std::uint32_t k = at.first(); k < at.first() + at.count(); ++k) {
+        if (at.is_leaf()) {
+          faces.push_back(object.tree().faces()[k]);
+        } else {
+          visit(object.tree().lines()[k].ref());
+        }
+      }
+    };
+    visit(node);
+    return faces;
+  };
+  int tight = 0;
+  int pruned = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Object a(make_sphere(1, 1 + i % 3));
+    const Object b(make_torus(1, 0.25, 4 + i % 5, 5, i % 2 == 0 ? Kind::tri : Kind::quad));
+    const Pose pose_a = random_pose(PoseClass::rigid, 1, random);
+    Pose pose_b = random_pose(pose_classes[static_cast<std::size_t>(i) % std::size(pose_classes)], 1, random);
+    pose_b.translation() += 3 * vector(random);
+    FrameGap frame(a, pose_a, b, pose_b);
+    frame.set_axis(pose_b.translation() - pose_a.translation());
+    simd::DistanceFrame single;
+    const double unit = frame.in_single(single);
+    const bvh::NodeRef root_a = a.tree().root();
+    const bvh::NodeRef root_b = b.tree().root();
+    const bvh::SupportLine* const lines_a = a.tree().lines() + root_a.first();
+    const bvh::SupportLine* const lines_b = b.tree().lines() + root_b.first();
+    std::array<double, 16> distance;
+    double median = 0;
+    for (std::uint32_t k = 0; k < root_a.count(); ++k) {
+      for (std::uint32_t l = 0; l < root_b.count(); ++l) {
+        double& least = distance[4 * k + l];
+        least = std::numeric_limits<double>::infinity();
+        for (const std::uint32_t x : faces_below(a, lines_a[k].ref())) {
+          for (const std::uint32_t y : faces_below(b, lines_b[l].ref())) {
+            const PosedDistances posed(pose_a, pose_b);
+            least = std::min(least, posed.bounds(a.mesh().primitive(x), b.mesh().primitive(y)).upper);
+          }
+        }
+        median += least / (root_a.count() * root_b.count());
+      }
+    }
+    const auto most = static_cast<float>(median * median / (unit * unit));
+    for (const simd::DistanceKernels& kernel : kernels) {
+      simd::NodeGaps gaps;
+      simd::NodeGaps limited;
+      const unsigned all = kernel.nodes(single, lines_a, root_a.count(), lines_b, root_b.count(), 0, any, gaps);
+      const unsigned near = kernel.nodes(single, lines_a, root_a.count(), lines_b, root_b.count(), 0, most, limited);
+      float left_out = std::numeric_limits<float>::infinity();
+      for (std::uint32_t k = 0; k < 4; ++k) {
+        for (std::uint32_t l = 0; l < 4; ++l) {
+          const std::uint32_t at = 4 * k + l;
+          const bool is_there = k < root_a.count() && l < root_b.count();
+          CAPTURE(i, k, l, is_there, sim::seed_from_environment());
+          REQUIRE((all >> at & 1U) == is_there);
+          if (!is_there) {
+            REQUIRE((near >> at & 1U) == 0);
+            continue;
+          }
+          const double bound = std::sqrt(static_cast<double>(gaps.square[at])) * unit;
+          REQUIRE(bound <= distance[at]);
+          tight += distance[at] > 0 && bound > 0.9 * distance[at] ? 1 : 0;
+          if (distance[at] < median) REQUIRE((near >> at & 1U) == 1);
+          if ((near >> at & 1U) == 1) continue;
+          ++pruned;
+          REQUIRE(gaps.square[at] > most);
+          left_out = std::min(left_out, limited.square[at]);
+        }
+      }
+      // At least as great as what was pruned by the frame alone, at most by all.
+      REQUIRE(limited.left_out <= left_out);
+      REQUIRE((limited.left_out > most || left_out == std::numeric_limits<float>::infinity()));
+    }
   }
-  const FrameGap::Line none = frame.line(Vec3d::Zero());
-  CHECK(FrameGap::gap(none, FrameGap::reach_a(none, node), FrameGap::reach_b(none, node)) == 0);
+  CHECK(tight > 100);
+  CHECK(pruned > 100);
 }
 
 TEST_CASE("distance bounds: half spaces are exact", "[lib][distance]") {

@@ -16,6 +16,7 @@
 #include "exact/nearest_planes.hpp"
 #include "search/behind_plane.hpp"
 #include "search/frame_gap.hpp"
+#include "search/gap_queue.hpp"
 #include "search/query_scale.hpp"
 #include "search/simd_distance.hpp"
 #include "search/tree_side.hpp"
@@ -42,9 +43,9 @@ void check(const DistanceRequest& request) {
   }
 }
 
-/// Branch and bound over pairs of nodes, depth first, of those below a pair the nearest one first. Bounds of nodes and
-/// of faces are in single precision; faces that may be the nearest ones are kept, doubles and then integers decide
-/// between them at the end. All in the unit that QueryScale has chosen.
+/// Branch and bound over pairs of nodes, the nearest ones first. Bounds of nodes and of faces are in single precision,
+/// squares in the unit of the frame; faces that may be the nearest ones are kept, doubles and then integers decide
+/// between them at the end. Those in the unit that QueryScale has chosen.
 class DistanceSearch {
  public:
   DistanceSearch(const CollisionQuery& query, const QueryScale& scale, const DistanceRequest& request)
@@ -66,13 +67,6 @@ class DistanceSearch {
   }
 
  private:
-  struct Item {
-    double gap;    ///< at most the distance
-    double order;  ///< the gap, or, below 0, how far the nodes overlap
-    NodeRef a;
-    NodeRef b;
-    friend bool operator<(const Item& x, const Item& y) { return x.order > y.order; }
-  };
   struct Faces {
     double lower;  ///< at most the distance
     std::uint32_t a;
@@ -90,65 +84,54 @@ class DistanceSearch {
     return group;
   }
 
-  /// Nothing this far apart matters any more.
-  bool is_pruned(double gap) {
-    if (gap > stop_above_) return true;
-    // A little less than what is allowed, for the rounding of this line.
-    if (gap < upper_ * (1 - (1 - 0x1p-20) * request_.rel_error)) return false;
-    pruned_ = std::min(pruned_, gap);
+  /// What is farther apart than this does not matter any more.
+  void set_limit() {
+    const double limit = std::min(stop_above_, upper_ * (1 - (1 - 0x1p-20) * request_.rel_error));
+    limit_ = static_cast<float>(std::min(limit / unit_ * (1 + 0x1p-20), 1e15));
+    most_ = limit_ * limit_ * (1 + 0x1p-20F);
+  }
+  bool is_pruned(float square) {
+    if (square <= most_) return false;
+    left_out_ = std::min(left_out_, square);
     return true;
   }
-
   void set_axis(const Vec3d& axis) {
     gap_.set_axis(axis);
     unit_ = gap_.in_single(frame_);
+    set_limit();
   }
 
   void search() {
     set_axis(gap_.middle_b(b_.tree.lines() + b_.tree.root().first(), b_.tree.root().count()) -
              gap_.middle_a(a_.tree.lines() + a_.tree.root().first(), a_.tree.root().count()));
-    stack_.reserve(256);
-    stack_.push_back({0, 0, a_.tree.root(), b_.tree.root()});
-    while (!stack_.empty()) {
-      std::pop_heap(stack_.begin(), stack_.end());
-      Item item = stack_.back();
-      stack_.pop_back();
-      if (is_pruned(item.gap)) break;
-      const bool is_behind = is_behind_planes(item);
+    queue_.push({0, a_.tree.root(), b_.tree.root()});
+    GapQueue::Pair pair;
+    while (queue_.pop(most_, pair)) {
+      if (is_pruned(pair.square)) continue;
+      const bool is_behind = is_behind_planes(pair);
       if (all_behind_) {
         found_.clear();
-        break;
+        return;
       }
       if (is_behind) continue;
-      for (;;) {
-        if (item.a.is_leaf() && item.b.is_leaf()) {
-          test_leaves(item.a, item.b);
+      do {
+        if (pair.a.is_leaf() && pair.b.is_leaf()) {
+          test_leaves(pair.a, pair.b);
           break;
         }
-        const std::size_t before = stack_.size();
-        const double most = nearest_ ? 1.25 * item.gap : infinity;
-        open(item);
-        const bool deeper = stack_.size() > before && stack_.back().gap <= most;
-        if (deeper) {
-          item = stack_.back();
-          stack_.pop_back();
-        }
-        for (std::size_t end = before + 1; end <= stack_.size(); ++end) {
-          std::push_heap(stack_.begin(), stack_.begin() + static_cast<std::ptrdiff_t>(end));
-        }
-        if (!deeper) break;
-      }
+      } while (open(pair));
     }
+    left_out_ = std::min(left_out_, queue_.least());
   }
 
   /// True only if nothing below the item is nearer than the nearest faces so far. Of many pairs at the same distance,
   /// as between parallel faces, bounds in single precision leave each open; the planes through the nearest points do
   /// not. They cost as much as some steps: they wait for as many, but not if the whole objects seem to lie behind them.
-  bool is_behind_planes(const Item& item) {
-    if (!nearest_ || !(is_between_planes_ || item.gap >= nearly * upper_)) return false;
+  bool is_behind_planes(const GapQueue::Pair& pair) {
+    if (!nearest_ || !(is_between_planes_ || pair.square >= nearly * nearly * most_)) return false;
     ++as_near_;
     // Those of earlier faces, which were not nearer, still prune.
-    const auto is_behind = [&] { return behind_a_ && behind_a_->contains(item.a) && behind_b_->contains(item.b); };
+    const auto is_behind = [&] { return behind_a_ && behind_a_->contains(pair.a) && behind_b_->contains(pair.b); };
     if (is_behind()) return true;
     const std::uint64_t wait = !is_between_planes_ ? 128 : behind_a_ ? 4 : 1;
     if (planes_of_ == nearest_ || as_near_ < wait) return false;
@@ -162,7 +145,7 @@ class DistanceSearch {
   /// At most the distance of the objects, by the frame.
   double whole_gap() {
     kernels_.nodes(frame_, a_.tree.lines() + a_.tree.whole().first(), 1, b_.tree.lines() + b_.tree.whole().first(), 1,
-                   0, gaps_);
+                   0, 0, gaps_);
     return std::sqrt(gaps_.square[0]) * unit_;
   }
 
@@ -176,87 +159,87 @@ class DistanceSearch {
     planes_.emplace(distances_, a_.mesh.primitive((*nearest_)[0]), b_.mesh.primitive((*nearest_)[1]));
   }
 
-  /// Puts the pairs of the nodes below that may be nearer than what is known onto the stack, the nearest one on top.
-  void open(const Item& item) {
+  /// Puts the pairs of the nodes below that may be nearer than what is known into the queue, but for the nearest one
+  /// where it is hardly farther apart than the pair, or none is known.
+  /// \param pair becomes that one
+  /// \returns whether there is one
+  bool open(GapQueue::Pair& pair) {
+    const std::uint32_t count_a = pair.a.count();
+    const std::uint32_t count_b = pair.b.count();
     ++stats_.steps;
-    stats_.box_tests += std::uint64_t{item.a.count()} * item.b.count();
-    const bvh::SupportLine* const lines_a = a_.tree.lines() + item.a.first();
-    const bvh::SupportLine* const lines_b = b_.tree.lines() + item.b.first();
-    unsigned left = kernels_.nodes(frame_, lines_a, item.a.count(), lines_b, item.b.count(),
-                                   single(std::min(upper_, stop_above_)), gaps_);
-    if (left == 0) return;
-    // Along the line between the middles of both, besides.
-    const FrameGap::Line line =
-        gap_.line(gap_.in_world(middle(gaps_.b, item.b.count(), -1) - middle(gaps_.a, item.a.count(), 1)));
-    std::array<double, 4> on_line_b;
-    for (std::uint32_t k = 0; k < item.b.count(); ++k) on_line_b[k] = FrameGap::reach_b(line, lines_b[k]);
-    // In a long search, by the slabs of both.
-    const bool with_slabs = stats_.steps > slab_steps;
-    std::array<FrameGap::FrameSlab, 4> slabs_b;
-    for (std::uint32_t k = 0; with_slabs && k < item.b.count(); ++k) slabs_b[k] = gap_.slab_b(lines_b[k], gaps_.b[k]);
-    const std::size_t before = stack_.size();
-    for (std::uint32_t i = 0; i < item.a.count(); ++i, left >>= 4U) {
-      if ((left & 15U) == 0) continue;
-      const FrameGap::FrameSlab slab_a = with_slabs ? gap_.slab_a(lines_a[i], gaps_.a[i]) : FrameGap::FrameSlab();
-      const bool leaf_a = lines_a[i].ref().is_leaf();
-      const double on_line_a = FrameGap::reach_a(line, lines_a[i]);
-      for (std::uint32_t k = 0; k < item.b.count(); ++k) {
-        if ((left >> k & 1U) == 0) continue;
-        const double in_frame = std::sqrt(gaps_.square[4 * i + k]) * unit_;
-        const double on_line = FrameGap::gap(line, on_line_a, on_line_b[k]);
-        double gap = std::max(item.gap, std::max(in_frame, on_line));
-        if (is_pruned(gap)) continue;
-        if (with_slabs) {
-          gap = std::max(gap, gap_.slab_gap(slab_a, slabs_b[k]) * unit_);
-          if (is_pruned(gap)) continue;
-        }
-        const bool leaf_b = lines_b[k].ref().is_leaf();
-        stack_.push_back(
-            {gap, gap > 0 ? gap : on_line, a_.below(item.a.first() + i, leaf_b), b_.below(item.b.first() + k, leaf_a)});
+    stats_.box_tests += std::uint64_t{count_a} * count_b;
+    const bvh::SupportLine* const lines_a = a_.tree.lines() + pair.a.first();
+    const bvh::SupportLine* const lines_b = b_.tree.lines() + pair.b.first();
+    unsigned near = kernels_.nodes(frame_, lines_a, count_a, lines_b, count_b, pair.square, most_, gaps_);
+    left_out_ = std::min(left_out_, gaps_.left_out);
+    if (near == 0) return false;
+    if (stats_.steps > slab_steps) near = near_by_slabs(near, lines_a, lines_b);
+    unsigned nearest = 16;
+    float least = nearest_ ? 1.5625F * pair.square : std::numeric_limits<float>::infinity();
+    for (unsigned left = near; left != 0; left &= left - 1) {
+      const unsigned number = lowest_bit(left);
+      if (!(gaps_.square[number] <= least)) continue;
+      nearest = number;
+      least = gaps_.square[number];
+    }
+    const GapQueue::Pair above = pair;
+    for (unsigned left = near; left != 0; left &= left - 1) {
+      const unsigned number = lowest_bit(left);
+      const std::uint32_t i = number / 4;
+      const std::uint32_t k = number % 4;
+      const GapQueue::Pair below = {gaps_.square[number], a_.below(above.a.first() + i, lines_b[k].ref().is_leaf()),
+                                    b_.below(above.b.first() + k, lines_a[i].ref().is_leaf())};
+      if (number == nearest) {
+        pair = below;
+      } else {
+        queue_.push(below);
       }
     }
-    if (stack_.size() > before + 1) {
-      std::iter_swap(std::max_element(stack_.begin() + static_cast<std::ptrdiff_t>(before), stack_.end()),
-                     stack_.end() - 1);
-    }
+    return nearest != 16;
   }
 
-  /// A length in units of the frame, rounded up.
-  float single(double length) const { return static_cast<float>(std::min(length / unit_ * (1 + 0x1p-20), 1e15)); }
-
-  /// Of nodes whose reaches these are, along the axes, from the centre of A.
-  Vec3d middle(const std::array<std::array<float, simd::reach_lanes>, 4>& reach, std::uint32_t count, int sign) const {
-    Vec3d sum = Vec3d::Zero();
-    for (std::uint32_t i = 0; i < count; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) sum[static_cast<Eigen::Index>(k)] += reach[i][2 * k] - reach[i][2 * k + 1];
+  /// In a long search, by the slabs of both.
+  unsigned near_by_slabs(unsigned near, const bvh::SupportLine* lines_a, const bvh::SupportLine* lines_b) {
+    std::array<std::optional<FrameGap::FrameSlab>, 4> slabs_b;
+    std::array<std::optional<FrameGap::FrameSlab>, 4> slabs_a;
+    for (unsigned left = near; left != 0; left &= left - 1) {
+      const unsigned number = lowest_bit(left);
+      const std::uint32_t i = number / 4;
+      const std::uint32_t k = number % 4;
+      if (!slabs_a[i]) slabs_a[i] = gap_.slab_a(lines_a[i], gaps_.a[i]);
+      if (!slabs_b[k]) slabs_b[k] = gap_.slab_b(lines_b[k], gaps_.b[k]);
+      const double gap = gap_.slab_gap(*slabs_a[i], *slabs_b[k]);
+      if (!(gap > 0)) continue;
+      gaps_.square[number] = std::max(gaps_.square[number], static_cast<float>(gap * gap * (1 - 0x1p-22)));
+      if (is_pruned(gaps_.square[number])) near &= ~(1U << number);
     }
-    sum *= sign * 0.5 / count;
-    if (sign < 0) sum += Vec3d(frame_.centre_b[0], frame_.centre_b[1], frame_.centre_b[2]);
-    return sum;
+    return near;
   }
+  static unsigned lowest_bit(unsigned bits) { return static_cast<unsigned>(__builtin_ctz(bits)); }
 
   void test_leaves(NodeRef leaf_a, NodeRef leaf_b) {
     const std::uint32_t pairs = leaf_a.count() * leaf_b.count();
     stats_.pairs += pairs;
     if (!kernels_.leaves(frame_, a_.tree.vertices(leaf_a.first()), leaf_a, b_.tree.vertices(leaf_b.first()), leaf_b,
-                         single(std::min(upper_, stop_above_)), faces_)) {
+                         limit_, faces_)) {
       // All are beyond what is known; a bound for an answer that need not be exact.
-      for (std::uint32_t i = 0; i < pairs; ++i) is_pruned(faces_.lower[number(i, leaf_b)] * unit_);
+      for (std::uint32_t i = 0; i < pairs; ++i) leave_out(faces_.lower[number(i, leaf_b)]);
       return;
     }
     for (std::uint32_t i = 0; i < pairs; ++i) {
-      const double lower = faces_.lower[number(i, leaf_b)] * unit_;
-      if (is_pruned(lower)) continue;
+      const float lower = faces_.lower[number(i, leaf_b)];
+      if (leave_out(lower)) continue;
       const std::uint32_t face_a = a_.tree.faces()[leaf_a.first() + i / leaf_b.count()];
       const std::uint32_t face_b = b_.tree.faces()[leaf_b.first() + i % leaf_b.count()];
       const bool is_nearer = faces_.upper[number(i, leaf_b)] * unit_ < upper_ || !nearest_;
       // Between parallel faces only the planes see which are nearer.
       const bool sticks_out = !is_nearer && behind_a_ && !is_behind(face_a, face_b);
       if (!is_nearer && behind_a_ && !sticks_out) continue;
-      found_.push_back({lower, face_a, face_b, 0});
+      found_.push_back({lower * unit_, face_a, face_b, 0});
       if (is_nearer || sticks_out) refine(found_.back());
     }
   }
+  bool leave_out(float gap) { return is_pruned(gap * gap * (1 - 0x1p-22F)); }
   /// No nearer than the faces of the planes.
   bool is_behind(std::uint32_t face_a, std::uint32_t face_b) const {
     return planes_->a().contains(a_.mesh.primitive(face_a)) && planes_->b().contains(b_.mesh.primitive(face_b));
@@ -280,6 +263,8 @@ class DistanceSearch {
 
   void answer(DistanceResult& result) {
     if (!nearest_) return answer_above(result);
+    // What is left out of an exact search is no nearer than the nearest faces.
+    if (request_.rel_error > 0) pruned_ = std::sqrt(static_cast<double>(left_out_)) * unit_ * (1 - 0x1p-20);
     double lower = std::min(pruned_, best_.lower);
     settle(lower);
     result.lower = scale_.lower(lower);
@@ -353,10 +338,13 @@ class DistanceSearch {
   simd::FaceGaps faces_;
   const PosedDistances distances_;
   CollisionStats stats_;
-  std::vector<Item> stack_;
+  GapQueue queue_;
+  float limit_ = 0;                                          ///< in the unit of the frame
+  float most_ = 0;                                           ///< its square
+  float left_out_ = std::numeric_limits<float>::infinity();  ///< the least square of what was left out
   std::vector<Faces> found_;
   double upper_ = infinity;   ///< the least of a pair of faces so far
-  double pruned_ = infinity;  ///< the least gap of what was left out since a pair of faces is as near
+  double pruned_ = infinity;  ///< of an answer that need not be exact: at most the distance of what was left out
   std::optional<FacePair> nearest_;
   DistanceBounds best_;             ///< of these
   std::uint64_t as_near_ = 0;       ///< items since then that are about as near

@@ -23,27 +23,6 @@ double stretch_of(const Eigen::Matrix3d& linear) {
 
 }  // namespace
 
-LineReach::LineReach(const Vec3d& m, double unit) {
-  const std::array<double, 3> size = {std::abs(m[0]), std::abs(m[1]), std::abs(m[2])};
-  std::array<std::size_t, 3> order = {0, 1, 2};
-  if (size[order[0]] < size[order[1]]) std::swap(order[0], order[1]);
-  if (size[order[1]] < size[order[2]]) std::swap(order[1], order[2]);
-  if (size[order[0]] < size[order[1]]) std::swap(order[0], order[1]);
-  const auto& [i, j, k] = order;
-  const std::array<unsigned, 3> negative = {m[0] < 0 ? 1U : 0U, m[1] < 0 ? 1U : 0U, m[2] < 0 ? 1U : 0U};
-  const auto axis = static_cast<std::uint8_t>(2 * i + negative[i]);
-  const auto face = static_cast<std::uint8_t>(negative[(k + 1) % 3] + 2 * negative[(k + 2) % 3]);
-  const auto corner = static_cast<std::uint8_t>(negative[0] + 2 * negative[1] + 4 * negative[2]);
-  const auto first_face = static_cast<std::uint8_t>(bvh::first_face_word + 4 * k);
-  constexpr auto first_corner = static_cast<std::uint8_t>(bvh::first_corner_word);
-  // (a - b) axis + (b - c) face diagonal + c cube diagonal, with a >= b >= c the magnitudes.
-  factor_ = {unit * (size[i] - size[j]), unit * 1.4142135623730951 * (size[j] - size[k]),
-             unit * 1.7320508075688772 * size[k]};
-  along_ = {axis, static_cast<std::uint8_t>(first_face + face), static_cast<std::uint8_t>(first_corner + corner)};
-  against_ = {static_cast<std::uint8_t>(axis ^ 1U), static_cast<std::uint8_t>(first_face + (face ^ 3U)),
-              static_cast<std::uint8_t>(first_corner + (corner ^ 7U))};
-}
-
 void LineReach::store(bool along, double scale, std::size_t lane, simd::FrameSide& side) const {
   const Words& words = along ? along_ : against_;
   // Both bytes of a word within the 16 bytes where it lies.
@@ -95,7 +74,6 @@ void FrameGap::set_axis(const Vec3d& axis) {
   for (std::size_t i = 0; i < axes; ++i) {
     for (Side* side : {&a_, &b_}) {
       side->m[i] = side->linear.transpose() * n[i];
-      side->m_centre[i] = side->m[i].dot(side->centre);
       side->reach[i] = LineReach(side->m[i], side->unit);
     }
     offset_[i] = n[i].dot(centre_between_);
@@ -105,7 +83,6 @@ void FrameGap::set_axis(const Vec3d& axis) {
   // products of the axes with each other, which is at most the greatest sum of magnitudes in a row of these.
   Eigen::Matrix3d all;
   all << n[0], n[1], n[2];
-  axes_ = all;
   const double eigenvalue = (all.transpose() * all).cwiseAbs().rowwise().sum().maxCoeff();
   scale_ = (1 - 0x1p-49) / std::sqrt(eigenvalue);
 }
@@ -192,40 +169,6 @@ double FrameGap::slab_gap(const FrameSlab& a, const FrameSlab& b) const {
   return std::max(gap(a, b, 1), gap(b, a, -1));
 }
 
-FrameGap::Reach FrameGap::reach(const Side& side, const bvh::SupportLine& line) {
-  Reach reach;
-  for (std::size_t i = 0; i < axes; ++i) {
-    reach.along[i] = side.reach[i].along(line);
-    reach.against[i] = side.reach[i].against(line);
-  }
-  return reach;
-}
-
-FrameGap::Reach FrameGap::reach(const Side& side, const Primitive& p) {
-  Reach reach;
-  for (std::size_t i = 0; i < axes; ++i) {
-    double most = -infinity;
-    double least = infinity;
-    for (std::size_t k = 0; k < p.vertex_count(); ++k) {
-      const double at = side.m[i].dot(p.v[k]);
-      most = std::max(most, at);
-      least = std::min(least, at);
-    }
-    reach.along[i] = most - side.m_centre[i];
-    reach.against[i] = side.m_centre[i] - least;
-  }
-  return reach;
-}
-
-FrameGap::Reach FrameGap::enclose(const Reach& x, const Reach& y) {
-  Reach reach;
-  for (std::size_t i = 0; i < axes; ++i) {
-    reach.along[i] = std::max(x.along[i], y.along[i]);
-    reach.against[i] = std::max(x.against[i], y.against[i]);
-  }
-  return reach;
-}
-
 Vec3d FrameGap::middle(const Side& side, const bvh::SupportLine* lines, std::size_t count) {
   Vec3d sum = Vec3d::Zero();
   for (std::size_t i = 0; i < count; ++i) {
@@ -233,17 +176,6 @@ Vec3d FrameGap::middle(const Side& side, const bvh::SupportLine* lines, std::siz
     sum += Vec3d(word[0] - word[1], word[2] - word[3], word[4] - word[5]);
   }
   return side.world_centre + side.linear * (sum * (0.5 * side.unit / static_cast<double>(count)));
-}
-
-FrameGap::Line FrameGap::line(const Vec3d& axis) const {
-  Line line;
-  const double greatest = axis.cwiseAbs().maxCoeff();
-  if (!is_moderate_ || !(greatest > 0x1p-200 && greatest < 0x1p200)) return line;
-  line.a = LineReach(a_.linear.transpose() * axis, a_.unit);
-  line.b = LineReach(b_.linear.transpose() * axis, b_.unit);
-  line.offset = axis.dot(centre_between_) - slack(axis);
-  line.per_length = (1 - 0x1p-48) / axis.norm();
-  return line;
 }
 
 }  // namespace cchip

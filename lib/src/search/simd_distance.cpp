@@ -12,6 +12,7 @@
 #include <iterator>
 #include <limits>
 
+#include "line_reach.hpp"
 #include "simd_distance.hpp"
 #include "simd_faces-inl.hpp"
 
@@ -64,8 +65,58 @@ HWY_INLINE void transpose(V4& p, V4& q, V4& r, V4& s) {
   s = hn::BitCast(d, hn::InterleaveUpper(d64, wide(c), wide(e)));
 }
 
+/// Sum of the middles of nodes, along the axes of the frame.
+HWY_INLINE std::array<float, 3> sum_of_middles(const std::array<std::array<float, reach_lanes>, 4>& reach,
+                                               std::size_t count) {
+  const D4 d;
+  V4 low = hn::Zero(d);
+  V4 high = hn::Zero(d);
+  for (std::size_t i = 0; i < count; ++i) {
+    low = hn::Add(low, hn::Load(d, reach[i].data()));
+    high = hn::Add(high, hn::Load(d, reach[i].data() + 4));
+  }
+  alignas(32) std::array<float, reach_lanes> sum;
+  hn::Store(low, d, sum.data());
+  hn::Store(high, d, sum.data() + 4);
+  return {0.5F * (sum[0] - sum[1]), 0.5F * (sum[2] - sum[3]), 0.5F * (sum[4] - sum[5])};
+}
+
+/// Gaps along the line between the middles of both, in the frame's unit.
+struct MiddleLine {
+  LineReach a;
+  LineReach b;
+  double offset = 0;
+
+  HWY_INLINE MiddleLine(const DistanceFrame& frame, const NodeGaps& gaps, std::size_t count_a, std::size_t count_b) {
+    const std::array<float, 3> middle_a = sum_of_middles(gaps.a, count_a);
+    const std::array<float, 3> middle_b =
+        sum_of_middles(gaps.b, count_b);  // its lanes are along the opposite directions
+    std::array<float, 3> n;
+    float square = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      n[i] = frame.centre_b[i] - middle_b[i] / static_cast<float>(count_b) - middle_a[i] / static_cast<float>(count_a);
+      square += n[i] * n[i];
+    }
+    if (!(square > 0x1p-40F)) return;
+    const float per_length = 1 / std::sqrt(square);
+    Vec3d m_a = Vec3d::Zero();
+    Vec3d m_b = Vec3d::Zero();
+    for (std::size_t i = 0; i < 3; ++i) {
+      n[i] *= per_length;
+      offset += static_cast<double>(n[i]) * frame.centre_b[i];
+      for (std::size_t k = 0; k < 3; ++k) {
+        m_a[static_cast<Eigen::Index>(k)] += static_cast<double>(n[i]) * frame.a.vertex[3 * i + k];
+        m_b[static_cast<Eigen::Index>(k)] += static_cast<double>(n[i]) * frame.b.vertex[3 * i + k];
+      }
+    }
+    offset -= 2 * static_cast<double>(frame.slack);
+    a = LineReach(m_a, 1);
+    b = LineReach(m_b, 1);
+  }
+};
+
 unsigned nodes(const DistanceFrame& frame, const SupportLine* a, std::uint32_t count_a, const SupportLine* b,
-               std::uint32_t count_b, float limit, NodeGaps& gaps) {
+               std::uint32_t count_b, float least, float most, NodeGaps& gaps) {
   const D4 d;
   for (std::size_t k = 0; k < 4; ++k) reach(frame.b, b[k], gaps.b[k].data());
   std::array<V4, reach_lanes> of_b;  // lane by lane, of four nodes
@@ -74,8 +125,17 @@ unsigned nodes(const DistanceFrame& frame, const SupportLine* a, std::uint32_t c
     transpose(of_b[at], of_b[at + 1], of_b[at + 2], of_b[at + 3]);
   }
   const V4 shrink = hn::Set(d, frame.shrink);
-  const V4 most = hn::Set(d, limit * limit * (1 + relative_slack));
-  const unsigned mask_b = (1U << count_b) - 1;
+  const V4 infinite = hn::Set(d, std::numeric_limits<float>::infinity());
+  V4 left_out = infinite;
+  const auto valid_b = hn::FirstN(d, count_b);
+  // Those that may be as near, a bit each.
+  const auto near_ones = [&](V4 square) {
+    const auto is_near = hn::Le(square, hn::Set(d, most));
+    left_out = hn::Min(left_out, hn::IfThenElse(hn::AndNot(is_near, valid_b), square, infinite));
+    std::array<std::uint8_t, 8> bits = {};
+    hn::StoreMaskBits(d, hn::And(is_near, valid_b), bits.data());
+    return unsigned{bits[0]};
+  };
   unsigned near = 0;
   for (std::size_t i = 0; i < count_a; ++i) {
     reach(frame.a, a[i], gaps.a[i].data());
@@ -91,12 +151,25 @@ unsigned nodes(const DistanceFrame& frame, const SupportLine* a, std::uint32_t c
           hn::Zero(d));
       square = hn::MulAdd(gap, gap, square);
     }
-    square = hn::Mul(square, shrink);
+    square = hn::Max(hn::Mul(square, shrink), hn::Set(d, least));
     hn::Store(square, d, gaps.square.data() + 4 * i);
-    std::array<std::uint8_t, 8> bits = {};
-    hn::StoreMaskBits(d, hn::Le(square, most), bits.data());
-    near |= (bits[0] & mask_b) << 4 * i;
+    near |= near_ones(square) << 4 * i;
   }
+  if (near != 0) {
+    const MiddleLine line(frame, gaps, count_a, count_b);
+    alignas(16) std::array<float, 4> line_b = {};
+    for (std::size_t k = 0; k < count_b; ++k) line_b[k] = static_cast<float>(line.b.against(b[k]));
+    for (std::size_t i = 0; i < count_a; ++i) {
+      if ((near >> 4 * i & 15U) == 0) continue;
+      const V4 gap =
+          hn::Max(hn::Sub(hn::Set(d, static_cast<float>(line.offset - line.a.along(a[i]))), hn::Load(d, line_b.data())),
+                  hn::Zero(d));
+      const V4 square = hn::Max(hn::Load(d, gaps.square.data() + 4 * i), hn::Mul(hn::Mul(gap, gap), shrink));
+      hn::Store(square, d, gaps.square.data() + 4 * i);
+      near &= near_ones(square) << 4 * i | ~(15U << 4 * i);
+    }
+  }
+  gaps.left_out = hn::GetLane(hn::MinOfLanes(d, left_out));
   return near;
 }
 

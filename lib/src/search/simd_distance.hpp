@@ -54,6 +54,7 @@ struct NodeGaps {
   /// Reaches of the children, lane by lane.
   alignas(32) std::array<std::array<float, reach_lanes>, 4> a;
   alignas(32) std::array<std::array<float, reach_lanes>, 4> b;
+  float left_out;  ///< the least square above the limit; infinite if there is none
 };
 
 /// Of up to two by two faces, at 2 i + k: bounds on their distance in units of the frame.
@@ -64,10 +65,11 @@ struct FaceGaps {
 
 struct DistanceKernels {
   /// \param a, b four lines each, of which the first `count_a` and `count_b` are of interest
-  /// \param limit distances above it are not
+  /// \param least at most the square of each distance, from the nodes above
+  /// \param most squares above it are of no interest
   /// \returns bit 4 i + k: child i of A and k of B may be as near
   unsigned (*nodes)(const DistanceFrame& frame, const bvh::SupportLine* a, std::uint32_t count_a,
-                    const bvh::SupportLine* b, std::uint32_t count_b, float limit, NodeGaps& gaps);
+                    const bvh::SupportLine* b, std::uint32_t count_b, float least, float most, NodeGaps& gaps);
   /// \param limit distances above it are of no interest: their upper bounds are infinite
   /// \returns false if all are above it
   bool (*leaves)(const DistanceFrame& frame, const float* vertices_a, bvh::NodeRef leaf_a, const float* vertices_b,
