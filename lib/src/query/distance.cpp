@@ -30,7 +30,7 @@ using FacePair = std::array<std::uint32_t, 2>;  ///< of A and of B, numbers in t
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// A search that takes more steps asks slabs, too: a short one is over before they pay.
-constexpr std::uint64_t slab_steps = 256;
+constexpr std::uint64_t slab_steps = 2048;
 constexpr double nearly = 1 - 0x1p-7;
 
 void check(const DistanceRequest& request) {
@@ -131,7 +131,11 @@ class DistanceSearch {
     if (!nearest_ || !(is_between_planes_ || pair.square >= nearly * nearly * most_)) return false;
     ++as_near_;
     // Those of earlier faces, which were not nearer, still prune.
-    const auto is_behind = [&] { return behind_a_ && behind_a_->contains(pair.a) && behind_b_->contains(pair.b); };
+    const auto is_behind = [&] {
+      if (!planes_help() || !behind_a_->contains(pair.a) || !behind_b_->contains(pair.b)) return false;
+      ++behind_;
+      return true;
+    };
     if (is_behind()) return true;
     const std::uint64_t wait = !is_between_planes_ ? 128 : behind_a_ ? 4 : 1;
     if (planes_of_ == nearest_ || as_near_ < wait) return false;
@@ -141,6 +145,9 @@ class DistanceSearch {
     all_behind_ = is_between_planes_ && behind_a_->contains_all() && behind_b_->contains_all();
     return is_behind();
   }
+
+  /// There are planes, and it pays to ask them: much of what was as near lay behind them.
+  bool planes_help() const { return behind_a_ && (is_between_planes_ || as_near_ < 512 || 8 * behind_ > as_near_); }
 
   /// At most the distance of the objects, by the frame.
   double whole_gap() {
@@ -233,10 +240,10 @@ class DistanceSearch {
       const std::uint32_t face_b = b_.tree.faces()[leaf_b.first() + i % leaf_b.count()];
       const bool is_nearer = faces_.upper[number(i, leaf_b)] * unit_ < upper_ || !nearest_;
       // Between parallel faces only the planes see which are nearer.
-      const bool sticks_out = !is_nearer && behind_a_ && !is_behind(face_a, face_b);
-      if (!is_nearer && behind_a_ && !sticks_out) continue;
+      const bool is_asked = !is_nearer && planes_help();
+      if (is_asked && is_behind(face_a, face_b)) continue;
       found_.push_back({lower * unit_, face_a, face_b, 0});
-      if (is_nearer || sticks_out) refine(found_.back());
+      if (is_nearer || (is_asked && is_between_planes_)) refine(found_.back());
     }
   }
   bool leave_out(float gap) { return is_pruned(gap * gap * (1 - 0x1p-22F)); }
@@ -256,7 +263,7 @@ class DistanceSearch {
     upper_ = bounds.upper;
     best_ = bounds;
     nearest_ = {faces.a, faces.b};
-    as_near_ = 0;
+    as_near_ = behind_ = 0;
     set_axis(bounds.point_b - bounds.point_a);
     is_between_planes_ = whole_gap() >= nearly * upper_;
   }
@@ -348,6 +355,7 @@ class DistanceSearch {
   std::optional<FacePair> nearest_;
   DistanceBounds best_;             ///< of these
   std::uint64_t as_near_ = 0;       ///< items since then that are about as near
+  std::uint64_t behind_ = 0;        ///< of these lie behind planes
   bool is_between_planes_ = false;  ///< by the frame the whole objects are nearly as far apart
   std::optional<exact::NearestPlanes> planes_;
   bool all_behind_ = false;  ///< nothing is nearer than the faces that planes_ is of

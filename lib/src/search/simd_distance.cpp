@@ -179,6 +179,9 @@ struct Point {
 HWY_INLINE Point operator-(const Point& p, const Point& q) {
   return {hn::Sub(p.x, q.x), hn::Sub(p.y, q.y), hn::Sub(p.z, q.z)};
 }
+HWY_INLINE Point operator+(const Point& p, const Point& q) {
+  return {hn::Add(p.x, q.x), hn::Add(p.y, q.y), hn::Add(p.z, q.z)};
+}
 HWY_INLINE Point operator*(V4 s, const Point& p) { return {hn::Mul(s, p.x), hn::Mul(s, p.y), hn::Mul(s, p.z)}; }
 HWY_INLINE V4 dot(const Point& p, const Point& q) {
   return hn::MulAdd(p.x, q.x, hn::MulAdd(p.y, q.y, hn::Mul(p.z, q.z)));
@@ -230,6 +233,21 @@ struct Triangles {
                               hn::Mul(gap, hn::Mul(hn::Sqrt(per_normal), hn::Set(d, 1 - relative_slack))));
   }
 };
+
+/// At most the square of the distance of two triangles, by their gaps along the axes of the frame.
+HWY_INLINE V4 square_in_frame(const Triangles& a, const Triangles& b, float slack, float shrink) {
+  const D4 d;
+  const auto square_of_gap = [&](V4 p, V4 q, V4 r, V4 s, V4 t, V4 u) {
+    const V4 before = hn::Sub(hn::Min(s, hn::Min(t, u)), hn::Max(p, hn::Max(q, r)));
+    const V4 behind = hn::Sub(hn::Min(p, hn::Min(q, r)), hn::Max(s, hn::Max(t, u)));
+    const V4 gap = hn::Max(hn::Sub(hn::Max(before, behind), hn::Set(d, slack)), hn::Zero(d));
+    return hn::Mul(gap, gap);
+  };
+  const V4 x = square_of_gap(a.v[0].x, a.v[1].x, a.v[2].x, b.v[0].x, b.v[1].x, b.v[2].x);
+  const V4 y = square_of_gap(a.v[0].y, a.v[1].y, a.v[2].y, b.v[0].y, b.v[1].y, b.v[2].y);
+  const V4 z = square_of_gap(a.v[0].z, a.v[1].z, a.v[2].z, b.v[0].z, b.v[1].z, b.v[2].z);
+  return hn::Mul(hn::Add(x, hn::Add(y, z)), hn::Set(d, shrink));
+}
 
 /// The vector between the nearest points so far.
 struct Nearest {
@@ -386,13 +404,23 @@ bool leaves(const DistanceFrame& frame, const float* vertices_a, NodeRef leaf_a,
   if (HWY_LIKELY(!leaf_a.is_quad() && !leaf_b.is_quad())) {
     Triangles p(spread<true>(a, leaf_a.count() > 1));
     Triangles q(spread<false>(b, leaf_b.count() > 1));
-    const V4 along_normals = hn::Max(p.gap(q, frame.slack), q.gap(p, frame.slack));  // most pairs are apart by it
-    hn::Store(along_normals, d, gaps.lower.data());
-    if (hn::AllTrue(d, hn::Gt(along_normals, hn::Set(d, limit)))) return false;
+    // Most pairs are apart by one of these.
+    V4 lower = hn::Max(p.gap(q, frame.slack), q.gap(p, frame.slack));
+    const auto all_beyond = [&] {
+      hn::Store(lower, d, gaps.lower.data());
+      return hn::AllTrue(d, hn::Gt(lower, hn::Set(d, limit)));
+    };
+    if (all_beyond()) return false;
+    lower = hn::Max(lower, hn::Sqrt(square_in_frame(p, q, frame.slack, frame.shrink)));
+    if (all_beyond()) return false;
+    const auto along = [&](const Point& axis) {
+      return proved_gap(axis, {p.v[0], p.v[1], p.v[2], p.v[2]}, {q.v[0], q.v[1], q.v[2], q.v[2]}, frame.slack);
+    };
+    lower = hn::Max(lower, along((q.v[0] - p.v[0]) + (q.v[1] - p.v[1]) + (q.v[2] - p.v[2])));
+    if (all_beyond()) return false;
     const Nearest best = nearest_of(p, q);
-    const V4 lower =
-        proved_gap(best.between, {p.v[0], p.v[1], p.v[2], p.v[2]}, {q.v[0], q.v[1], q.v[2], q.v[2]}, frame.slack);
-    hn::Store(hn::Max(lower, along_normals), d, gaps.lower.data());
+    lower = hn::Max(lower, along(best.between));
+    hn::Store(lower, d, gaps.lower.data());
     hn::Store(upper_of(best.square), d, gaps.upper.data());
     return true;
   }
