@@ -323,6 +323,7 @@ def implement(kind, work, project, pins, name, module, tools_at):
     synthesis = (f"read_verilog -lib {HERE}/cells.v; read_verilog -DSYNTHESIS -I{RTL}/include -defer {read}; "
                  f"read_verilog {folder}/top.v; hierarchy -check -top fabric_top; "
                  "synth -flatten -run begin:fine; memory_map; opt -full; techmap; opt; "
+                 "setattr -unset init w:*; "  # the fabric sets no flip-flop; none of ours needs it
                  r"dfflegalize -cell $_DFF_P_ x; abc -lut 4; opt_clean -purge; "
                  f"techmap -map {HERE}/maps.v; opt_clean -purge; hilomap -singleton -hicell FABRIC_ONE O "
                  f"-locell FABRIC_ZERO O; techmap -map {HERE}/maps.v; stat; write_json {folder}/net.json")
