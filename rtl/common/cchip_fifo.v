@@ -89,7 +89,8 @@ module cchip_fifo #(
       for (j = 1; j < BANKS; j = j + 1) if (bank[j]) choose = from[WIDTH*j+:WIDTH];
     end
   endfunction
-  wire [WIDTH-1:0] word = choose(words, read_bank_q);
+  // with DEPTH = 1 a push finds the queue empty: its word needs the output register only, no memory
+  wire [WIDTH-1:0] word = DEPTH == 1 ? s_data : choose(words, read_bank_q);
 
   // the bank after this one
   wire [BANKS-1:0] write_bank_next = (write_bank_q << 1) | (write_bank_q >> (BANKS - 1));
@@ -97,7 +98,7 @@ module cchip_fifo #(
 
   // the comparisons use registers only; push and pop, which come late, select among their results
   always @(posedge clk) begin
-    if (load) data_q <= word;
+    if (DEPTH == 1 ? push : load) data_q <= word;
     if (rst) begin
       write_q <= 4'd0;
       write_bank_q <= FIRST_BANK;

@@ -264,17 +264,6 @@ def write_top(pins, path, region):
 
 # ---- modules
 
-def without_memory(folder):
-    """The RTL's queues for a fabric without memory in LUTs: a bank holds the one word that DEPTH = 1 can put there."""
-    text = (RTL / "common" / "cchip_fifo.v").read_text()
-    for old, new in (("mem [0:15]", "mem [0:0]"), ("mem[write_q]", "mem[0]"), ("mem[read_q]", "mem[0]")):
-        if text.count(old) != 1:
-            raise Failed(f"cchip_fifo.v has '{old}' {text.count(old)} times")
-        text = text.replace(old, new)
-    (folder / "cchip_fifo.v").write_text(text)
-    return folder / "cchip_fifo.v"
-
-
 def rtl_files():
     lines = (RTL / "cchip.f").read_text().splitlines()
     names = [line.split()[0] for line in lines if line.strip().endswith(".v")]
@@ -313,9 +302,7 @@ def implement(kind, work, project, pins, name, module, tools_at):
         part_of_fabric(project, folder, lambda column: column < kind.first)
     else:
         region = kind.top
-        sources = [HERE / "small_region.v"]
-        if region != "small_region":
-            sources = [path for path in rtl_files() if path.name != "cchip_fifo.v"] + [without_memory(folder)]
+        sources = [HERE / "small_region.v"] if region == "small_region" else rtl_files()
         region += f" #(.RM_ID({module}), .COORD_W(4), .CONTEXTS(1))"
         part_of_fabric(project, folder, lambda column: column >= kind.first)
     write_top(pins, folder / "top.v", region)
