@@ -56,7 +56,7 @@ class Set:
 
 
 SETS = {"small": Set("W" + 8 * "L" + "I", 8, 5, (0, 1, 2), "small_region", 400, 20, 1200),
-        "point": Set("W" + 26 * "L" + "I", 26, 3, (0, 4), "cchip_pr_region", 800, 24, 3600)}
+        "point": Set("W" + 26 * "L" + "I", 26, 3, (0, 4), "cchip_pr_region", 800, 24, 7200)}
 TILES = {"W": ("NULL", "W_IO", "NULL"), "L": ("N_term_single", "LUT4AB", "S_term_single"),
          "I": ("N_term_RAM_IO", "RAM_IO", "S_term_RAM_IO")}
 
@@ -292,6 +292,30 @@ def part_of_fabric(project, folder, inside):
     (folder / ".FABulous" / "pips.txt").write_text("\n".join(kept) + "\n")
 
 
+# bit_gen, whose parser needs minutes for a big module, with one for the lines that nextpnr writes: a feature, or the
+# bits of a LUT from the first on
+BIT_GEN = r"""
+import re
+import fabulous_bit_gen.bit_gen as tool
+from fasm import FasmLine, SetFasmFeature
+
+
+def features(path):
+    for line in open(path):
+        line = line.partition("#")[0].strip()
+        lut = re.fullmatch(r"([\w.]+)\[(\d+):0\] = \d+'b([01]+)", line)
+        if not lut and line and not re.fullmatch(r"[\w.]+", line):
+            raise ValueError("not a line of nextpnr: " + line)
+        places = [at for at, bit in enumerate(reversed(lut[3])) if bit == "1"] if lut else [0] if line else []
+        for at in places:
+            yield FasmLine(SetFasmFeature(lut[1] if lut else line, at or None, None, 1, None), None, None)
+
+
+tool._parse_fasm_to_canon_list = features
+tool.bit_gen()
+"""
+
+
 def implement(kind, work, project, pins, name, module, tools_at):
     """Synthesis, place and route, bits: the frames of all columns, {(column, frame): words}."""
     folder = work / name
@@ -317,8 +341,8 @@ def implement(kind, work, project, pins, name, module, tools_at):
     run(["yosys", "-p", synthesis], folder / f"{name}-yosys.log", 900)
     run(["nextpnr-generic", "--uarch", "fabulous", "--router", "router2", "--seed", "1", "--json", folder / "net.json",
          "-o", f"fasm={folder}/net.fasm"], folder / f"{name}-nextpnr.log", 900, env={**os.environ, "FAB_ROOT": folder})
-    run([tools_at / "bit_gen", "-genBitstream", folder / "net.fasm", project / ".FABulous" / "bitStreamSpec.bin",
-         folder / "net.bin"], folder / f"{name}-bit_gen.log", 900)
+    run([tools_at / "python3", "-c", BIT_GEN, "-genBitstream", folder / "net.fasm",
+         project / ".FABulous" / "bitStreamSpec.bin", folder / "net.bin"], folder / f"{name}-bit_gen.log", 900)
     used = re.findall(r"FABULOUS_LC: +(\d+)/ *(\d+)", (folder / f"{name}-nextpnr.log").read_text())
     cells = re.findall(r"^ +(LUT\w+) +(\d+)$", (folder / f"{name}-yosys.log").read_text(), re.M)
     flops = sum(int(count) for cell, count in cells if cell.startswith("LUTFF"))
@@ -417,7 +441,7 @@ def simulate(name, kind, work, options):
                                     "small_region.v")]
     run(["iverilog", "-g2005", "-o", work / "bench.vvp", "-s", "bench", "-s", "fabric_state", *defines,
          f"-I{RTL}/include", f"-I{work}", *own, *rtl_files(), *sorted((work / "fabric").glob("*.v"))],
-        work / "iverilog.log", 900)
+        work / "iverilog.log", 1800)
     extra = [f"+{option}" for option in ("without_decoupler", "without_roc") if getattr(options, option)]
     run(["vvp", "-n", work / "bench.vvp", f"+seed={options.seed}", *extra], work / "vvp.log", kind.seconds, cwd=work)
     text = (work / "vvp.log").read_text()
