@@ -6,7 +6,7 @@ fabric, places and routes each module inside its region, packs the frames for cc
 usage: fabric.py [--set small|point] [--seed N] [--without-decoupler | --without-roc] [--keep]
 
 --set      small (the default): two small modules and a blank on 10 x 8 tiles, with faulty bitstreams, three minutes.
-           point: the test of points against triangles and a blank, 28 x 26 tiles, long, 2.3 GB, not simulated to its end yet
+           point: the test of points against triangles and a blank, 28 x 26 tiles, 2.3 GB; not simulated to its end yet
 --seed     of the traffic (default 1)
 --keep     takes the fabric and the bitstreams of an earlier run as they are
 --without-decoupler, --without-roc   leave this part out, to see that its absence is found: the run must then fail
