@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cchip/blocks/traversal.hpp>
 
 namespace cchip::model {
@@ -91,6 +92,7 @@ void Traversal::decide_next(const Inputs& in) {
     o.query = {(*query)[0], (*query)[1], (*query)[15]};
   }
   TraversalLimits limits = in.limits;
+  limits.pairs_each = pairs_each_;
   limits.open = inside.open_limit;
   limits.stack = shape_.stack;
   decision_ = decide(limits, o);
@@ -100,6 +102,8 @@ void Traversal::decide_next(const Inputs& in) {
 void Traversal::clock(const Inputs& in) {
   const TraversalEvents::Inputs to_events = events_inputs(in);
   const bool running = to_events.running;
+  const unsigned pairs_each = in.limits.pairs_each;
+  const unsigned pairs_each_now = events_.few() ? std::min(2 * pairs_each + 1, 7U) : pairs_each;
 
   // what the event at the end of the pipeline brings about
   fetch_.reset();
@@ -173,6 +177,7 @@ void Traversal::clock(const Inputs& in) {
   events_.clock(to_events);
   if (!running) ++cleared_;
   decide_next(in);
+  pairs_each_ = pairs_each_now;
 }
 
 void Traversal::reset() {

@@ -118,6 +118,7 @@ void TraversalEvents::clock(const Inputs& in) {
   room_ += room_back_;
   room_ -= takes_room ? 1 : 0;
   room_back_ = (in.left ? in.left->room : 0) + (in.leaf_room ? 1 : 0);
+  few_ = answers_ < 4;
   answers_ += ends ? 1 : 0;
   answers_ -= in.answer_room ? 1 : 0;
 
@@ -148,6 +149,7 @@ void TraversalEvents::reset() {
   room_back_ = 0;
   some_room_ = true;
   answers_ = 0;
+  few_ = true;
   may_ = {};
   choose_ = false;
   // without_query_ and wanting_ as they are during reset

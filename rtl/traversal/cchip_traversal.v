@@ -12,6 +12,8 @@
 //                is used again when its count is 0
 //   room         a verdict always has room: a node pair is in flight only with a place in the leaf
 //                queue; a query starts only with a place for its answer
+//   few          with 3 queries or fewer, from their start until their answer is taken, each may
+//                have 2 pairs_each + 1 node pairs in flight, 7 at most
 //   rules        fewer than 1,900 leaf pairs are without a result behind cchip_get_data
 //   latency      14 or 15 clocks from s_verdict_valid to m_valid
 //   throughput   an event every second clock, of one query one in 8 clocks
@@ -28,10 +30,10 @@ module cchip_traversal #(
 ) (
     input  wire                            clk,                // clock, rising edge
     input  wire                            rst,                // synchronous reset, active high
-    // ---- limits; they may change on any clock, and apply to queries in flight, too. Node pairs
-    //      of a query in flight, 0..7; 0 counts as 1; half of it with leaf pairs out
-    // node pairs of a query that may be in flight, 0..7; 0 counts as 1; half of it for a query for
-    // the first hit with leaf pairs out
+    // ---- limits; they may change on any clock, and apply to queries in flight, too
+    // node pairs of a query that may be in flight, 0..7; 0 counts as 1; with 3 queries or fewer
+    // twice as many and one more, 7 at most; half of it for a query for the first hit with leaf
+    // pairs out
     input  wire [                     2:0] pairs_each,
     // ---- node pairs of a query, 0..2^32 - 1; 0: it ends with code STEPS at its first one
     // node pairs after which a query ends with code steps, 0..2^32 - 1
@@ -148,7 +150,7 @@ module cchip_traversal #(
   wire [PLACE_W-1:0] place1, place5;
   wire [`CCHIP_BOX_VERDICT_W-1:0] verdict1;
   wire [8:0] result1, result5;
-  wire running;
+  wire running, few;
   wire query_bad;
   wire [511:0] query;
   wire drop_valid, drop_ready, leaf_room;
@@ -216,6 +218,7 @@ module cchip_traversal #(
       .m_place(place1),
       .m_verdict(verdict1),
       .m_result(result1),
+      .m_few(few),
       .s_leaving_valid(valid_q6),
       .s_leaving_context(context_q6),
       .s_left_valid(valid_q8),
@@ -321,11 +324,17 @@ module cchip_traversal #(
       .epoch        (epoch)
   );
 
+  // ---- node pairs that a query may have in flight. Few queries leave places, box test and bus
+  // idle and wait for memory, so each of them may have more
+  reg [2:0] each_q;
+  always @(posedge clk)
+    each_q <= few ? {pairs_each[1:0], 1'b1} | {3{pairs_each[2]}} : pairs_each;
+
   // ---- stages 5 to 7: what happens
   cchip_traversal_decision #(.STACK(STACK), .WORK_W(WORK_W)) u_decision (
       .clk            (clk),
       .rst            (rst),
-      .pairs_each     (pairs_each),
+      .pairs_each     (each_q),
       .open_limit     (open_limit),
       .s_valid        (valid5),
       .s_is_verdict   (is5[0]),

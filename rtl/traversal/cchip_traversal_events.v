@@ -73,6 +73,8 @@ module cchip_traversal_events #(
     output wire [                56:0] m_verdict,          // s_verdict without the place
     // {code, open pairs, definite hits}; 0 of a dropped pair
     output wire [                 8:0] m_result,
+    // 3 queries or fewer have started whose answers were not taken, a clock ago
+    output wire                        m_few,
     // ---- an event leaves the pipeline in two clocks: the next one of its query may ask
     // an event leaves the pipeline in two clocks
     input  wire                        s_leaving_valid,
@@ -235,16 +237,19 @@ module cchip_traversal_events #(
     end
   end
   wire answer_room, unused_some;
-  wire [$clog2(ANSWERS+1)-1:0] unused_answers;
+  localparam integer ANSWERS_W = $clog2(ANSWERS + 1);
+  wire [ANSWERS_W-1:0] answers;
   cchip_count #(.LIMIT(ANSWERS)) u_answers (
       .clk  (clk),
       .rst  (rst),
       .up   (start_ends),
       .down (s_answer_room),
-      .count(unused_answers),
+      .count(answers),
       .some (unused_some),
       .room (answer_room)
   );
+  reg few_q;
+  always @(posedge clk) few_q <= rst | ({{32 - ANSWERS_W{1'b0}}, answers} < 32'd4);
 
   // ---- first clock: which sources may enter?
   reg req_verdict_q, req_result_q, req_drop_q, req_start_q, req_pop_q;
@@ -343,7 +348,8 @@ module cchip_traversal_events #(
   assign m_place = place_q;
   assign m_verdict = of_verdict_q;
   assign m_result = of_result_q;
-  wire unused = &{1'b0, unused_answers, unused_some};
+  assign m_few = few_q;
+  wire unused = &{1'b0, unused_some};
 
   // clocks for which the first result, and the first verdict, have waited; whether the other went
   // before it though it might have entered

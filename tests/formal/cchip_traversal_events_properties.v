@@ -117,6 +117,7 @@ module cchip_traversal_events_properties #(
       .m_place        (m_place),
       .m_verdict      (),
       .m_result       (),
+      .m_few          (),
       .s_leaving_valid(valid_q[LAST-2]),
       .s_leaving_context(context_q[LAST-2]),
       .s_left_valid   (left),

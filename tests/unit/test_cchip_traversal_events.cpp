@@ -210,6 +210,7 @@ void check(const Top& top, const TraversalEvents& model) {
   REQUIRE((top.s_result_ready != 0) == model.result_ready());
   REQUIRE((top.s_drop_ready != 0) == model.drop_ready());
   REQUIRE((top.lookup != 0) == model.lookup());
+  REQUIRE((top.m_few != 0) == model.few());
   if (model.lookup_place()) REQUIRE(std::size_t{top.lookup_place} == *model.lookup_place());
   if (model.query()) {
     for (int i = 0; i < 16; ++i)

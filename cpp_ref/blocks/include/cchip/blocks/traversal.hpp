@@ -107,6 +107,7 @@ class Traversal {
   NodePair looked_pair_;
   NodeLines looked_lines_;
   std::size_t cleared_ = 0;  ///< words after reset
+  unsigned pairs_each_ = 0;  ///< node pairs of a query in flight, as few queries or many have them
   LeafQueue leaf_queue_;
   Pool leaf_places_;
   Fifo<DoneRecord> done_;

@@ -77,6 +77,7 @@ class TraversalEvents {
   bool query_bad() const { return query_bad_; }
   bool result_ready() const { return results_.s_ready(); }
   const std::optional<Event>& event() const { return event_; }
+  bool few() const { return few_; }  ///< 3 queries or fewer had started whose answers were not taken
   /// The verdict that waits is at its place; defined while it has one.
   std::optional<std::size_t> lookup_place() const {
     return verdicts_.m_valid() ? std::optional(verdicts_.m_data().place) : std::nullopt;
@@ -108,6 +109,7 @@ class TraversalEvents {
   std::size_t room_ = 0, room_back_ = 0;
   bool some_room_ = true;
   std::size_t answers_ = 0;
+  bool few_ = true;
   std::uint32_t locked_ = 0, inside_ = 0, without_query_ = 0, wanting_ = 0;  ///< contexts
   std::uint32_t free_idle_ = 0, free_want_ = 0;                              ///< a clock ago
   std::optional<QueryWords> query_;

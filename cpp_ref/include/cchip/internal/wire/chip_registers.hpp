@@ -223,7 +223,8 @@ constexpr int pairs_shift = 0;
 constexpr std::uint32_t pairs_reset = 0x10;
 }  // namespace open_limit
 
-/// Most node pairs of one query in flight.
+/// Most node pairs of one query in flight while four or more queries are; of fewer, each may have twice as many and one
+/// more, 7 at most.
 namespace pairs_each {
 constexpr std::uint32_t offset = 0x03C;
 /// node pairs, 1..4; 0 counts as 1
