@@ -266,7 +266,7 @@ module cchip_chip_core #(
   // ---- queries
   wire query_valid, query_ready, queries_idle;
   wire [`CCHIP_QUERY_W-1:0] query;
-  cchip_query_ring #(.SLOTS(MISSES), .AHEAD(4), .DATA_W(DATA_W)) u_queries (
+  cchip_query_ring #(.SLOTS(MISSES), .AHEAD(8), .DATA_W(DATA_W)) u_queries (
       .clk          (clk),
       .rst          (block_rst[QUERY_RING]),
       .enable       (enable),
