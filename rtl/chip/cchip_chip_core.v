@@ -71,8 +71,8 @@ module cchip_chip_core #(
     input  wire                           rst,                 // synchronous reset, active high
     input  wire                           core_rst,            // resets all but the bus masters
     // ---- limits (cchip_traversal, cchip_axi_read)
-    // node pairs of a query that may be in flight, 0..7; 0 counts as 1; half of it for a query for
-    // the first hit with leaf pairs out
+    // node pairs of a query that may be in flight, 0..7; 0 counts as 1; 2 pairs_each + 1, 7 at most,
+    // with 3 queries or fewer; half of it for a query for the first hit with leaf pairs out
     input  wire [                    2:0] pairs_each,
     // node pairs after which a query ends with code steps, 0..2^32 - 1
     input  wire [                   31:0] step_limit,

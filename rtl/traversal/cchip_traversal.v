@@ -12,8 +12,8 @@
 //                is used again when its count is 0
 //   room         a verdict always has room: a node pair is in flight only with a place in the leaf
 //                queue; a query starts only with a place for its answer
-//   few          with 3 queries or fewer, from their start until their answer is taken, each may
-//                have 2 pairs_each + 1 node pairs in flight, 7 at most
+//   few          with 3 queries or fewer between start and taken answer, each may have
+//                2 pairs_each + 1 node pairs in flight, 7 at most
 //   rules        fewer than 1,900 leaf pairs are without a result behind cchip_get_data
 //   latency      14 or 15 clocks from s_verdict_valid to m_valid
 //   throughput   an event every second clock, of one query one in 8 clocks
