@@ -79,6 +79,7 @@ TEST_CASE("distance bounds: gaps along a frame and a line", "[lib][distance]") {
   const std::vector<simd::DistanceKernels> kernels = all_kernels();
   int tight_faces = 0;
   int tight_slabs = 0;
+  int tight_along = 0;
   int tight = 0;
   int tight_on_line = 0;
   int apart = 0;
@@ -101,7 +102,8 @@ TEST_CASE("distance bounds: gaps along a frame and a line", "[lib][distance]") {
     const bvh::SupportLine& line_b = b.tree().lines()[b.tree().root().first()];
     const double root = rough_root(square, unit_bits);
     apart += root > 0;
-    const DistanceBounds near = PosedDistances(pose_a, pose_b).bounds(mesh_a.primitive(0), mesh_b.primitive(0));
+    const PosedDistances posed(pose_a, pose_b);
+    const DistanceBounds near = posed.bounds(mesh_a.primitive(0), mesh_b.primitive(0));
     for (int k = 0; k < 4; ++k) {
       const Vec3d n = k == 0 ? Vec3d(near.point_b - near.point_a) : axis(random);
       frame.set_axis(n);
@@ -118,13 +120,16 @@ TEST_CASE("distance bounds: gaps along a frame and a line", "[lib][distance]") {
                               b.tree().vertices(line_b.ref().first()), line_b.ref(), any, faces));
         const double lower = faces.lower[0] * unit;
         const double upper = faces.upper[0] * unit;
-        CAPTURE(in_single, by_slabs, lower, upper);
-        for (const double bound : {in_single, by_slabs, lower}) {
+        const Vec3d between(faces.between[0][0], faces.between[1][0], faces.between[2][0]);
+        const double along = posed.gap_along(frame.in_world(between), mesh_a.primitive(0), mesh_b.primitive(0));
+        CAPTURE(in_single, by_slabs, lower, upper, along);
+        for (const double bound : {in_single, by_slabs, lower, along}) {
           if (bound > 0) REQUIRE(compare(square, bound, unit_bits) >= 0);
         }
         if (upper < std::numeric_limits<double>::infinity()) REQUIRE(compare(square, upper, unit_bits) <= 0);
         (k == 0 ? tight : tight_on_line) += root > 0 && in_single > 0.99 * root ? 1 : 0;
         tight_faces += root > 0 && lower > 0.999 * root && upper < 1.001 * root ? 1 : 0;
+        tight_along += root > 0 && along > root * (1 - 1e-6) ? 1 : 0;
         tight_slabs += root > 0 && by_slabs > 0.9 * root ? 1 : 0;
         // Beyond a limit, too, a lower bound stays one.
         if (root > 0 && !kernel.leaves(single, a.tree().vertices(line_a.ref().first()), line_a.ref(),
@@ -136,9 +141,11 @@ TEST_CASE("distance bounds: gaps along a frame and a line", "[lib][distance]") {
     }
   }
   std::cout << "apart=" << apart << " tight=" << tight << " tight_on_line=" << tight_on_line
-            << " tight_faces=" << tight_faces << " tight_slabs=" << tight_slabs << '\n';
+            << " tight_faces=" << tight_faces << " tight_slabs=" << tight_slabs << " tight_along=" << tight_along
+            << '\n';
   CHECK(tight_faces > 10000);
   CHECK(tight_slabs > 1000);
+  CHECK(tight_along > 10000);
   CHECK(apart > 3000);
   // Bounds that are never near the distance would prove little.
   CHECK(tight > 1000);

@@ -37,6 +37,7 @@ class HalfSpace {
   Vec<FineFilter> normal_;
   Vec3d rounded_ = Vec3d::Zero();
   std::array<bool, 3> is_zero_ = {};  ///< exactly
+  int along_ = -1;                    ///< the axis of the object that the normal is exactly along, or -1
   std::array<Vec3d, 3> on_plane_;
   std::function<Vec<BigInt>()> make_exact_;
   mutable std::optional<Vec<BigInt>> exact_;

@@ -162,9 +162,19 @@ Vec3d common_point(const Rounded& r, const NearPoints& best) {
   return point;
 }
 
+/// At most the distance; an axis from B to A proves a gap as in PosedPairs. \pre r.moderate, and so is the length
+double proved_gap(const Rounded& r, const Vec3d& axis, double length) {
+  double from = infinity;
+  double to = -infinity;
+  for (std::size_t i = 0; i < r.count_a; ++i) from = std::min(from, axis.dot(r.a[i]));
+  for (std::size_t i = 0; i < r.count_b; ++i) to = std::max(to, axis.dot(r.b[i]));
+  const double size = axis.cwiseAbs().sum();
+  const double gap = (from - to) - size * (2.5 * r.error + 16 * unit * r.greatest);
+  return gap > 0 ? gap / length * (1 - 16 * unit) : 0;
+}
+
 /// What the points prove. The exact points differ from the rounded vertices' by `error` in each coordinate, those of
-/// the hulls from their combinations by at most 24 units of the greatest coordinate; an axis proves a gap as in
-/// PosedPairs.
+/// the hulls from their combinations by at most 24 units of the greatest coordinate.
 void prove(const Rounded& r, const NearPoints& best, double& lower, double& upper) {
   lower = 0;
   upper = infinity;
@@ -173,13 +183,7 @@ void prove(const Rounded& r, const NearPoints& best, double& lower, double& uppe
   const double length = std::sqrt(axis.squaredNorm());
   upper = length * (1 + 8 * unit) + 4 * (r.error + 24 * unit * r.greatest);
   if (!(length > 0x1p-300)) return;
-  double from = infinity;
-  double to = -infinity;
-  for (std::size_t i = 0; i < r.count_a; ++i) from = std::min(from, axis.dot(r.a[i]));
-  for (std::size_t i = 0; i < r.count_b; ++i) to = std::max(to, axis.dot(r.b[i]));
-  const double size = axis.cwiseAbs().sum();
-  const double gap = (from - to) - size * (2.5 * r.error + 16 * unit * r.greatest);
-  if (gap > 0) lower = gap / length * (1 - 16 * unit);
+  lower = proved_gap(r, axis, length);
 }
 
 /// The square of d in units of 2^(2 exponent).
@@ -277,25 +281,29 @@ PosedDistances::PosedDistances(const Pose& pose_a, const Pose& pose_b)
 /// The steps of the members of PosedDistances for one pair.
 class PosedDistances::Pair {
  public:
-  Pair(const PosedDistances& poses, const Primitive& a, const Primitive& b) : poses_(poses), a_(a), b_(b) {
-    r_.count_a = a.vertex_count();
-    r_.count_b = b.vertex_count();
+  Pair(const PosedDistances& poses, const Primitive& a, const Primitive& b)
+      : poses_(poses), a_(a), b_(b), r_(rounded(poses, a, b)), near_(near_points(r_)) {
+    prove(r_, near_, lower_, upper_);
+  }
+  static Rounded rounded(const PosedDistances& poses, const Primitive& a, const Primitive& b) {
+    Rounded r;
+    r.count_a = a.vertex_count();
+    r.count_b = b.vertex_count();
     // As in PosedPairs: both frames lose B's translation, then b's first vertex, rounded, is the origin.
-    r_.base = poses.pose_b_.linear() * b.v[0];
-    for (std::size_t i = 0; i < r_.count_a; ++i) {
-      r_.a[i] = (poses.pose_a_.linear() * a.v[i] + poses.offset_) - r_.base;
-      r_.greatest = std::max(r_.greatest, r_.a[i].cwiseAbs().maxCoeff());
+    r.base = poses.pose_b_.linear() * b.v[0];
+    for (std::size_t i = 0; i < r.count_a; ++i) {
+      r.a[i] = (poses.pose_a_.linear() * a.v[i] + poses.offset_) - r.base;
+      r.greatest = std::max(r.greatest, r.a[i].cwiseAbs().maxCoeff());
     }
-    for (std::size_t i = 0; i < r_.count_b; ++i) {
-      r_.b[i] = poses.pose_b_.linear() * b.v[i] - r_.base;
-      r_.greatest = std::max(r_.greatest, r_.b[i].cwiseAbs().maxCoeff());
+    for (std::size_t i = 0; i < r.count_b; ++i) {
+      r.b[i] = poses.pose_b_.linear() * b.v[i] - r.base;
+      r.greatest = std::max(r.greatest, r.b[i].cwiseAbs().maxCoeff());
     }
     const double magnitude = poses.row_sum_a_ * greatest_component(a) + poses.row_sum_b_ * greatest_component(b) +
                              poses.offset_.cwiseAbs().maxCoeff();
-    r_.error = 8 * unit * magnitude + 0x1p-1070;
-    r_.moderate = magnitude < 0x1p400 && (r_.greatest == 0 || r_.greatest > 0x1p-400);
-    near_ = near_points(r_);
-    prove(r_, near_, lower_, upper_);
+    r.error = 8 * unit * magnitude + 0x1p-1070;
+    r.moderate = magnitude < 0x1p400 && (r.greatest == 0 || r.greatest > 0x1p-400);
+    return r;
   }
 
   double lower() const { return lower_; }
@@ -437,6 +445,12 @@ DistanceBounds PosedDistances::bounds(const Primitive& a, const Primitive& b) co
   return Pair(*this, a, b).bounds();
 }
 
+double PosedDistances::gap_along(const Vec3d& axis, const Primitive& a, const Primitive& b) const {
+  const Rounded r = Pair::rounded(*this, a, b);
+  const double length = axis.norm();
+  return r.moderate && length > 0x1p-300 && length < 0x1p300 ? proved_gap(r, -axis, length) : 0;
+}
+
 DistanceBounds PosedDistances::tight_bounds(const Primitive& a, const Primitive& b) const {
   const Pair pair(*this, a, b);
   DistanceBounds result = pair.bounds();
@@ -526,6 +540,12 @@ HalfSpace::HalfSpace(const Vec<FineFilter>& normal, const std::array<Vec3d, 3>& 
   const double greatest = rounded_.cwiseAbs().maxCoeff();
   if (greatest > 0 && greatest < infinity) rounded_ *= std::ldexp(1.0, -std::ilogb(greatest) - 1);
   for (std::size_t k = 0; k < 3; ++k) is_zero_[k] = normal[k].is_known() && normal[k].sign() == 0;
+  for (int k = 0; k < 3; ++k) {
+    if (is_zero_[static_cast<std::size_t>(k + 1) % 3] && is_zero_[static_cast<std::size_t>(k + 2) % 3] &&
+        normal[static_cast<std::size_t>(k)].sign() != 0) {
+      along_ = k;
+    }
+  }
 }
 
 HalfSpace::HalfSpace(const Vec<BigInt>& normal, const std::array<Vec3d, 3>& on_plane)
@@ -534,6 +554,7 @@ HalfSpace::HalfSpace(const Vec<BigInt>& normal, const std::array<Vec3d, 3>& on_p
 }
 
 bool HalfSpace::contains(const Vec3d& v) const {
+  if (along_ >= 0) return rounded_[along_] > 0 ? v[along_] <= through()[along_] : v[along_] >= through()[along_];
   // Along the plane from a point of it, in exact numbers.
   for (const Vec3d& p : on_plane_) {
     if ((v.x() == p.x() || is_zero_[0]) && (v.y() == p.y() || is_zero_[1]) && (v.z() == p.z() || is_zero_[2])) {

@@ -143,7 +143,7 @@ class DistanceSearch {
     behind_a_.emplace(a_, planes_->a());
     behind_b_.emplace(b_, planes_->b());
     all_behind_ = is_between_planes_ && behind_a_->contains_all() && behind_b_->contains_all();
-    return is_behind();
+    return all_behind_ || is_behind();
   }
 
   /// There are planes, and it pays to ask them: much of what was as near lay behind them.
@@ -207,15 +207,19 @@ class DistanceSearch {
 
   /// In a long search, by the slabs of both.
   unsigned near_by_slabs(unsigned near, const bvh::SupportLine* lines_a, const bvh::SupportLine* lines_b) {
-    std::array<std::optional<FrameGap::FrameSlab>, 4> slabs_b;
-    std::array<std::optional<FrameGap::FrameSlab>, 4> slabs_a;
+    std::array<FrameGap::FrameSlab, 4>& slabs_a = slabs_[0];
+    std::array<FrameGap::FrameSlab, 4>& slabs_b = slabs_[1];
+    unsigned made_a = 0;
+    unsigned made_b = 0;
     for (unsigned left = near; left != 0; left &= left - 1) {
       const unsigned number = lowest_bit(left);
       const std::uint32_t i = number / 4;
       const std::uint32_t k = number % 4;
-      if (!slabs_a[i]) slabs_a[i] = gap_.slab_a(lines_a[i], gaps_.a[i]);
-      if (!slabs_b[k]) slabs_b[k] = gap_.slab_b(lines_b[k], gaps_.b[k]);
-      const double gap = gap_.slab_gap(*slabs_a[i], *slabs_b[k]);
+      if ((made_a >> i & 1U) == 0) slabs_a[i] = gap_.slab_a(lines_a[i], gaps_.a[i]);
+      if ((made_b >> k & 1U) == 0) slabs_b[k] = gap_.slab_b(lines_b[k], gaps_.b[k]);
+      made_a |= 1U << i;
+      made_b |= 1U << k;
+      const double gap = gap_.slab_gap(slabs_a[i], slabs_b[k]);
       if (!(gap > 0)) continue;
       gaps_.square[number] = std::max(gaps_.square[number], static_cast<float>(gap * gap * (1 - 0x1p-22)));
       if (is_pruned(gaps_.square[number])) near &= ~(1U << number);
@@ -240,10 +244,22 @@ class DistanceSearch {
       const std::uint32_t face_b = b_.tree.faces()[leaf_b.first() + i % leaf_b.count()];
       const bool is_nearer = faces_.upper[number(i, leaf_b)] * unit_ < upper_ || !nearest_;
       // Between parallel faces only the planes see which are nearer.
-      const bool is_asked = !is_nearer && planes_help();
-      if (is_asked && is_behind(face_a, face_b)) continue;
-      found_.push_back({lower * unit_, face_a, face_b, 0});
-      if (is_nearer || (is_asked && is_between_planes_)) refine(found_.back());
+      if (is_nearer) {
+        refine({lower * unit_, face_a, face_b, 0});
+        continue;
+      }
+      if (planes_help() && is_behind(face_a, face_b)) continue;
+      // In doubles, along the line that single precision has found.
+      const std::size_t at = number(i, leaf_b);
+      const Vec3d between(faces_.between[0][at], faces_.between[1][at], faces_.between[2][at]);
+      const double gap =
+          distances_.gap_along(gap_.in_world(between), a_.mesh.primitive(face_a), b_.mesh.primitive(face_b));
+      const Faces faces = {std::max(gap, lower * unit_), face_a, face_b, 0};
+      if (faces.lower < upper_ * (1 - 0x1p-20)) {
+        refine(faces);
+      } else if (faces.lower < upper_) {
+        found_.push_back(faces);
+      }
     }
   }
   bool leave_out(float gap) { return is_pruned(gap * gap * (1 - 0x1p-22F)); }
@@ -256,9 +272,10 @@ class DistanceSearch {
   }
 
   /// Bounds in doubles of faces that may be the nearest ones.
-  void refine(Faces& faces) {
+  void refine(Faces faces) {
     const DistanceBounds bounds = distances_.bounds(a_.mesh.primitive(faces.a), b_.mesh.primitive(faces.b));
     faces.lower = std::max(faces.lower, bounds.lower);
+    found_.push_back(faces);
     if (nearest_ && !(bounds.upper < upper_)) return;
     upper_ = bounds.upper;
     best_ = bounds;
@@ -342,6 +359,7 @@ class DistanceSearch {
   simd::DistanceFrame frame_;
   double unit_ = 1;  ///< of the frame
   simd::NodeGaps gaps_;
+  std::array<std::array<FrameGap::FrameSlab, 4>, 2> slabs_;
   simd::FaceGaps faces_;
   const PosedDistances distances_;
   CollisionStats stats_;

@@ -83,6 +83,7 @@ void FrameGap::set_axis(const Vec3d& axis) {
   // products of the axes with each other, which is at most the greatest sum of magnitudes in a row of these.
   Eigen::Matrix3d all;
   all << n[0], n[1], n[2];
+  axes_ = all;
   const double eigenvalue = (all.transpose() * all).cwiseAbs().rowwise().sum().maxCoeff();
   scale_ = (1 - 0x1p-49) / std::sqrt(eigenvalue);
 }

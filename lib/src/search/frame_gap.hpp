@@ -54,6 +54,9 @@ class FrameGap {
   /// At most the distance of the nodes in units of the frame, by both slabs; may be negative.
   double slab_gap(const FrameSlab& a, const FrameSlab& b) const;
 
+  /// The axes times these numbers.
+  Vec3d in_world(const Vec3d& along_axes) const { return axes_ * along_axes; }
+
   /// In the world, rounded and relative to one point: the middle of what the lines contain.
   Vec3d middle_a(const bvh::SupportLine* lines, std::size_t count) const { return middle(a_, lines, count); }
   Vec3d middle_b(const bvh::SupportLine* lines, std::size_t count) const { return between_ + middle(b_, lines, count); }
@@ -87,6 +90,7 @@ class FrameGap {
   std::array<double, axes> offset_ = {};
   std::array<double, axes> slack_ = {};
   double scale_ = 0;  ///< from the root of the sum of squares to the bound
+  Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity();
   Vec3d offset_in_frame_ = Vec3d::Zero();
 };
 

@@ -422,6 +422,9 @@ bool leaves(const DistanceFrame& frame, const float* vertices_a, NodeRef leaf_a,
     lower = hn::Max(lower, along(best.between));
     hn::Store(lower, d, gaps.lower.data());
     hn::Store(upper_of(best.square), d, gaps.upper.data());
+    hn::Store(best.between.x, d, gaps.between[0].data());
+    hn::Store(best.between.y, d, gaps.between[1].data());
+    hn::Store(best.between.z, d, gaps.between[2].data());
     return true;
   }
   // Quads: the lanes are the triangles 0 1 2 and 0 2 3 of both.
@@ -458,7 +461,12 @@ bool leaves(const DistanceFrame& frame, const float* vertices_a, NodeRef leaf_a,
       const Nearest best = nearest_of(p, q);
       const V4 lower = proved_gap(best.between, points_a, points_b, frame.slack);
       gaps.lower[2U * i + k] = hn::GetLane(hn::MaxOfLanes(d, hn::Max(lower, along_normals)));
-      gaps.upper[2U * i + k] = hn::GetLane(upper_of(hn::MinOfLanes(d, best.square)));
+      const V4 least = hn::MinOfLanes(d, best.square);
+      gaps.upper[2U * i + k] = hn::GetLane(upper_of(least));
+      const auto lane = static_cast<std::size_t>(hn::FindKnownFirstTrue(d, hn::Eq(best.square, least)));
+      gaps.between[0][2U * i + k] = hn::ExtractLane(best.between.x, lane);
+      gaps.between[1][2U * i + k] = hn::ExtractLane(best.between.y, lane);
+      gaps.between[2][2U * i + k] = hn::ExtractLane(best.between.z, lane);
     }
   }
   return true;

@@ -61,6 +61,8 @@ struct NodeGaps {
 struct FaceGaps {
   alignas(16) std::array<float, 4> lower;
   alignas(16) std::array<float, 4> upper;
+  alignas(
+      16) std::array<std::array<float, 4>, 3> between;  ///< near points, from A's to B's, along the axes of the frame
 };
 
 struct DistanceKernels {

@@ -50,6 +50,8 @@ class PosedDistances {
   /// `lower` and `upper` are the distance, or the two doubles beside it.
   /// \throws std::invalid_argument a coordinate is not finite
   DistanceBounds tight_bounds(const Primitive& a, const Primitive& b) const;
+  /// At most the distance, by the gap along an axis of the world that leads from A to B, of any length; at least 0.
+  double gap_along(const Vec3d& axis, const Primitive& a, const Primitive& b) const;
 
  private:
   class Pair;
