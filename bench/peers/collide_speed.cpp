@@ -465,12 +465,6 @@ class Benchmark {
     }
   }
 
-  /// Fills the caches with something that no query needs.
-  void fill_caches() {
-    unrelated_.resize(std::size_t{96} << 20U);
-    for (std::size_t byte = 0; byte < unrelated_.size(); byte += 64) ++unrelated_[byte];
-  }
-
   /// One query alone, after the caches were filled with something else.
   void run_lone(const Bodies& bodies, PoseMaker& maker, const std::vector<std::vector<Approach>>& approaches) {
     const std::size_t count = std::clamp<std::size_t>(options_.poses / 30, 5, 60);
@@ -794,7 +788,6 @@ class Benchmark {
   std::size_t fcl_errs_ = 0;
   std::size_t differences_ = 0;
   std::size_t done_ = 0;
-  std::vector<unsigned char> unrelated_;
   Progress progress_;
 };
 

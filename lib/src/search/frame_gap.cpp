@@ -23,7 +23,8 @@ double stretch_of(const Eigen::Matrix3d& linear) {
 
 }  // namespace
 
-void LineReach::store(bool along, double scale, std::size_t lane, simd::FrameSide& side) const {
+template <>
+void BasicLineReach<double>::store(bool along, double scale, std::size_t lane, simd::FrameSide& side) const {
   const Words& words = along ? along_ : against_;
   // Both bytes of a word within the 16 bytes where it lies.
   const auto bytes = [](std::size_t word) { return static_cast<std::uint16_t>(0x0100U + 0x0202U * (word % 8)); };

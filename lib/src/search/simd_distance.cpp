@@ -36,14 +36,18 @@ HWY_INLINE void reach(const FrameSide& side, const SupportLine& line, float* to)
   const auto corner = hn::BitCast(d16, hn::TableLookupBytes(hn::Load(d8, words + 16), bytes(side.corner)));
   const auto face = hn::BitCast(d16, hn::Or(hn::TableLookupBytesOr0(hn::Load(d8, words + 32), bytes(side.face_low)),
                                             hn::TableLookupBytesOr0(hn::Load(d8, words + 48), bytes(side.face_high))));
-  const hn::FixedTag<std::int32_t, 4> d32;
-  const hn::Half<decltype(d16)> half;
-  const D4 d;
-  for (std::size_t at = 0; at < reach_lanes; at += 4) {
-    const auto whole = [&](hn::Vec<decltype(d16)> v) {
-      return hn::ConvertTo(d, hn::PromoteTo(d32, at == 0 ? hn::LowerHalf(half, v) : hn::UpperHalf(half, v)));
+  const D8F d;
+  const hn::Rebind<std::int32_t, D8F> d32;
+  for (std::size_t at = 0; at < reach_lanes; at += lanes8) {
+    const auto whole = [&](auto v) {
+      if constexpr (lanes8 == reach_lanes) {
+        return hn::ConvertTo(d, hn::PromoteTo(d32, v));
+      } else {
+        const hn::Half<hn::DFromV<decltype(v)>> half;
+        return hn::ConvertTo(d, hn::PromoteTo(d32, at == 0 ? hn::LowerHalf(half, v) : hn::UpperHalf(half, v)));
+      }
     };
-    V4 sum = hn::Mul(whole(axis), hn::Load(d, side.axis_factor.data() + at));
+    auto sum = hn::Mul(whole(axis), hn::Load(d, side.axis_factor.data() + at));
     sum = hn::MulAdd(whole(corner), hn::Load(d, side.corner_factor.data() + at), sum);
     sum = hn::MulAdd(whole(face), hn::Load(d, side.face_factor.data() + at), sum);
     hn::Store(sum, d, to + at);
@@ -83,91 +87,137 @@ HWY_INLINE std::array<float, 3> sum_of_middles(const std::array<std::array<float
 
 /// Gaps along the line between the middles of both, in the frame's unit.
 struct MiddleLine {
-  LineReach a;
-  LineReach b;
-  double offset = 0;
+  using Reach = BasicLineReach<float>;
+  Reach a;
+  Reach b;
+  float offset = 0;
 
   HWY_INLINE MiddleLine(const DistanceFrame& frame, const NodeGaps& gaps, std::size_t count_a, std::size_t count_b) {
     const std::array<float, 3> middle_a = sum_of_middles(gaps.a, count_a);
     const std::array<float, 3> middle_b =
         sum_of_middles(gaps.b, count_b);  // its lanes are along the opposite directions
+    const float per_a = 1 / static_cast<float>(count_a);
+    const float per_b = 1 / static_cast<float>(count_b);
     std::array<float, 3> n;
     float square = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-      n[i] = frame.centre_b[i] - middle_b[i] / static_cast<float>(count_b) - middle_a[i] / static_cast<float>(count_a);
+      n[i] = frame.centre_b[i] - middle_b[i] * per_b - middle_a[i] * per_a;
       square += n[i] * n[i];
     }
     if (!(square > 0x1p-40F)) return;
     const float per_length = 1 / std::sqrt(square);
-    Vec3d m_a = Vec3d::Zero();
-    Vec3d m_b = Vec3d::Zero();
-    for (std::size_t i = 0; i < 3; ++i) {
-      n[i] *= per_length;
-      offset += static_cast<double>(n[i]) * frame.centre_b[i];
-      for (std::size_t k = 0; k < 3; ++k) {
-        m_a[static_cast<Eigen::Index>(k)] += static_cast<double>(n[i]) * frame.a.vertex[3 * i + k];
-        m_b[static_cast<Eigen::Index>(k)] += static_cast<double>(n[i]) * frame.b.vertex[3 * i + k];
-      }
-    }
-    offset -= 2 * static_cast<double>(frame.slack);
-    a = LineReach(m_a, 1);
-    b = LineReach(m_b, 1);
+    for (float& x : n) x *= per_length;
+    // n . column k of the map from each object to the frame
+    const auto in_object = [&n](const std::array<float, 9>& map) {
+      std::array<float, 3> m;
+      for (std::size_t k = 0; k < 3; ++k) m[k] = n[0] * map[k] + n[1] * map[3 + k] + n[2] * map[6 + k];
+      return m;
+    };
+    offset = n[0] * frame.centre_b[0] + n[1] * frame.centre_b[1] + n[2] * frame.centre_b[2] - 2 * frame.slack;
+    a = Reach(in_object(frame.a.vertex), 1);
+    b = Reach(in_object(frame.b.vertex), 1);
   }
 };
 
+/// Lane by lane, of four nodes.
+struct Lanes {
+  alignas(32) std::array<std::array<float, 4>, reach_lanes> of;
+
+  HWY_INLINE explicit Lanes(const std::array<std::array<float, reach_lanes>, 4>& reach) {
+    const D4 d;
+    for (std::size_t at = 0; at < reach_lanes; at += 4) {
+      std::array<V4, 4> v;
+      for (std::size_t k = 0; k < 4; ++k) v[k] = hn::Load(d, reach[k].data() + at);
+      transpose(v[0], v[1], v[2], v[3]);
+      for (std::size_t k = 0; k < 4; ++k) hn::Store(v[k], d, of[at + k].data());
+    }
+  }
+};
+
+/// The pairs of four nodes of A and four of B: pair 4 i + k in lane 4 i + k of `parts` vectors.
+struct Pairs {
+  using V = hn::Vec<D8F>;
+  static constexpr std::size_t parts = 16 / lanes8;
+  static constexpr auto order = [] {
+    std::array<std::int32_t, 16> at = {};
+    for (std::size_t pair = 0; pair < 16; ++pair) at[pair] = static_cast<std::int32_t>(pair / 4);
+    return at;
+  }();
+  /// \param of_a four numbers of A's nodes; each pair's own
+  HWY_INLINE static V of_a(const float* of_a, std::size_t part) {
+    const D8F d;
+    return hn::TableLookupLanes(hn::LoadDup128(d, of_a), hn::SetTableIndices(d, order.data() + part * lanes8));
+  }
+  HWY_INLINE static V of_b(const float* of_b) { return hn::LoadDup128(D8F(), of_b); }
+};
+
+/// Infinite where there is no pair, 0 where there is one, by the counts of nodes.
+struct NoPairs {
+  alignas(32) std::array<std::array<std::array<float, 16>, 5>, 5> at = {};
+  constexpr NoPairs() {
+    for (std::size_t a = 0; a < 5; ++a) {
+      for (std::size_t b = 0; b < 5; ++b) {
+        for (std::size_t pair = 0; pair < 16; ++pair) {
+          at[a][b][pair] = pair / 4 < a && pair % 4 < b ? 0 : std::numeric_limits<float>::infinity();
+        }
+      }
+    }
+  }
+};
+constexpr NoPairs no_pairs;
+
 unsigned nodes(const DistanceFrame& frame, const SupportLine* a, std::uint32_t count_a, const SupportLine* b,
                std::uint32_t count_b, float least, float most, NodeGaps& gaps) {
-  const D4 d;
-  for (std::size_t k = 0; k < 4; ++k) reach(frame.b, b[k], gaps.b[k].data());
-  std::array<V4, reach_lanes> of_b;  // lane by lane, of four nodes
-  for (std::size_t at = 0; at < reach_lanes; at += 4) {
-    for (std::size_t k = 0; k < 4; ++k) of_b[at + k] = hn::Load(d, gaps.b[k].data() + at);
-    transpose(of_b[at], of_b[at + 1], of_b[at + 2], of_b[at + 3]);
+  const D8F d;
+  for (std::size_t k = 0; k < 4; ++k) {
+    reach(frame.a, a[k], gaps.a[k].data());
+    reach(frame.b, b[k], gaps.b[k].data());
   }
-  const V4 shrink = hn::Set(d, frame.shrink);
-  const V4 infinite = hn::Set(d, std::numeric_limits<float>::infinity());
-  V4 left_out = infinite;
-  const auto valid_b = hn::FirstN(d, count_b);
+  const Lanes lanes_a(gaps.a);
+  const Lanes lanes_b(gaps.b);
+  const auto zero = hn::Zero(d);
+  const auto shrink = hn::Set(d, frame.shrink);
+  const auto infinite = hn::Set(d, std::numeric_limits<float>::infinity());
+  auto left_out = infinite;
   // Those that may be as near, a bit each.
-  const auto near_ones = [&](V4 square) {
+  const auto near_ones = [&](hn::Vec<D8F> square, std::size_t part) {
+    hn::Store(square, d, gaps.square.data() + part * lanes8);
     const auto is_near = hn::Le(square, hn::Set(d, most));
-    left_out = hn::Min(left_out, hn::IfThenElse(hn::AndNot(is_near, valid_b), square, infinite));
+    left_out = hn::Min(left_out, hn::IfThenElse(is_near, infinite, square));
     std::array<std::uint8_t, 8> bits = {};
-    hn::StoreMaskBits(d, hn::And(is_near, valid_b), bits.data());
-    return unsigned{bits[0]};
+    hn::StoreMaskBits(d, is_near, bits.data());
+    return unsigned{bits[0]} << part * lanes8;
   };
   unsigned near = 0;
-  for (std::size_t i = 0; i < count_a; ++i) {
-    reach(frame.a, a[i], gaps.a[i].data());
-    alignas(32) std::array<float, reach_lanes> left;
-    for (std::size_t at = 0; at < reach_lanes; at += 4) {
-      hn::Store(hn::Sub(hn::Load(d, frame.offset.data() + at), hn::Load(d, gaps.a[i].data() + at)), d,
-                left.data() + at);
-    }
-    V4 square = hn::Zero(d);
+  for (std::size_t part = 0; part < Pairs::parts; ++part) {
+    auto square = zero;
     for (std::size_t lane = 0; lane < 6; lane += 2) {
-      const V4 gap = hn::Max(
-          hn::Max(hn::Sub(hn::Set(d, left[lane]), of_b[lane]), hn::Sub(hn::Set(d, left[lane + 1]), of_b[lane + 1])),
-          hn::Zero(d));
+      const auto along = [&](std::size_t l) {
+        const auto left = hn::Sub(hn::Set(d, frame.offset[l]), Pairs::of_a(lanes_a.of[l].data(), part));
+        return hn::Sub(left, Pairs::of_b(lanes_b.of[l].data()));
+      };
+      const auto gap = hn::Max(hn::Max(along(lane), along(lane + 1)), zero);
       square = hn::MulAdd(gap, gap, square);
     }
     square = hn::Max(hn::Mul(square, shrink), hn::Set(d, least));
-    hn::Store(square, d, gaps.square.data() + 4 * i);
-    near |= near_ones(square) << 4 * i;
+    square = hn::Max(square, hn::Load(d, no_pairs.at[count_a][count_b].data() + part * lanes8));
+    near |= near_ones(square, part);
   }
   if (near != 0) {
     const MiddleLine line(frame, gaps, count_a, count_b);
-    alignas(16) std::array<float, 4> line_b = {};
-    for (std::size_t k = 0; k < count_b; ++k) line_b[k] = static_cast<float>(line.b.against(b[k]));
-    for (std::size_t i = 0; i < count_a; ++i) {
-      if ((near >> 4 * i & 15U) == 0) continue;
-      const V4 gap =
-          hn::Max(hn::Sub(hn::Set(d, static_cast<float>(line.offset - line.a.along(a[i]))), hn::Load(d, line_b.data())),
-                  hn::Zero(d));
-      const V4 square = hn::Max(hn::Load(d, gaps.square.data() + 4 * i), hn::Mul(hn::Mul(gap, gap), shrink));
-      hn::Store(square, d, gaps.square.data() + 4 * i);
-      near &= near_ones(square) << 4 * i | ~(15U << 4 * i);
+    alignas(16) std::array<float, 4> left_a;
+    alignas(16) std::array<float, 4> line_b;
+    for (std::size_t k = 0; k < 4; ++k) {
+      left_a[k] = line.offset - line.a.along(a[k]);
+      line_b[k] = line.b.against(b[k]);
     }
+    unsigned still = 0;
+    for (std::size_t part = 0; part < Pairs::parts; ++part) {
+      const auto gap = hn::Max(hn::Sub(Pairs::of_a(left_a.data(), part), Pairs::of_b(line_b.data())), zero);
+      const auto square = hn::Load(d, gaps.square.data() + part * lanes8);
+      still |= near_ones(hn::Max(square, hn::Mul(hn::Mul(gap, gap), shrink)), part);
+    }
+    near &= still;
   }
   gaps.left_out = hn::GetLane(hn::MinOfLanes(d, left_out));
   return near;
@@ -206,12 +256,14 @@ struct Triangles {
   Point normal;
   V4 per_normal;  ///< 1 / square of the normal
 
-  HWY_INLINE explicit Triangles(const std::array<Point, 3>& vertices) : v(vertices) {
+  HWY_INLINE explicit Triangles(const std::array<Point, 3>& vertices) : v(vertices) {}
+  HWY_INLINE void measure_normal() {
     const D4 d;
     for (std::size_t i = 0; i < 3; ++i) edge[i] = v[(i + 1) % 3] - v[i];
     normal = cross(edge[0], edge[1]);
     per_normal = hn::Div(hn::Set(d, 1), dot(normal, normal));
   }
+  /// \pre measure_normal()
   HWY_INLINE void measure_edges() {
     const D4 d;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -405,18 +457,20 @@ bool leaves(const DistanceFrame& frame, const float* vertices_a, NodeRef leaf_a,
     Triangles p(spread<true>(a, leaf_a.count() > 1));
     Triangles q(spread<false>(b, leaf_b.count() > 1));
     // Most pairs are apart by one of these.
-    V4 lower = hn::Max(p.gap(q, frame.slack), q.gap(p, frame.slack));
+    V4 lower = hn::Sqrt(square_in_frame(p, q, frame.slack, frame.shrink));
     const auto all_beyond = [&] {
       hn::Store(lower, d, gaps.lower.data());
       return hn::AllTrue(d, hn::Gt(lower, hn::Set(d, limit)));
     };
     if (all_beyond()) return false;
-    lower = hn::Max(lower, hn::Sqrt(square_in_frame(p, q, frame.slack, frame.shrink)));
-    if (all_beyond()) return false;
     const auto along = [&](const Point& axis) {
       return proved_gap(axis, {p.v[0], p.v[1], p.v[2], p.v[2]}, {q.v[0], q.v[1], q.v[2], q.v[2]}, frame.slack);
     };
     lower = hn::Max(lower, along((q.v[0] - p.v[0]) + (q.v[1] - p.v[1]) + (q.v[2] - p.v[2])));
+    if (all_beyond()) return false;
+    p.measure_normal();
+    q.measure_normal();
+    lower = hn::Max(lower, hn::Max(p.gap(q, frame.slack), q.gap(p, frame.slack)));
     if (all_beyond()) return false;
     const Nearest best = nearest_of(p, q);
     lower = hn::Max(lower, along(best.between));
@@ -452,6 +506,8 @@ bool leaves(const DistanceFrame& frame, const float* vertices_a, NodeRef leaf_a,
       }
       Triangles p({points_a[0], points_a[1], points_a[2]});
       Triangles q({points_b[0], points_b[1], points_b[2]});
+      p.measure_normal();
+      q.measure_normal();
       // Each lane's axis proves its bound for the whole faces; points of each are points of them.
       const V4 along_normals = hn::Max(proved_gap(p.normal, points_a, points_b, frame.slack),
                                        proved_gap(q.normal, points_a, points_b, frame.slack));
