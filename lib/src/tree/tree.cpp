@@ -10,6 +10,7 @@ namespace cchip::bvh {
 namespace {
 
 constexpr int bins = 24;
+static_assert(bins <= 32);        // a bit each
 constexpr std::size_t width = 4;  // children of a node
 
 struct Box {
@@ -146,39 +147,50 @@ class Builder {
     return node.count / 2;
   }
 
-  Split best_split(const BinaryNode& node, const Box& centres) const {
-    struct Bin {
-      Box box;
-      std::size_t count = 0;
-    };
+  struct Bin {
+    Box box;
+    std::size_t count = 0;
+    void add(const Bin& other) {
+      box.add(other.box);
+      count += other.count;
+    }
+    double cost() const { return box.area() * static_cast<double>(count); }
+  };
+
+  Split best_split(const BinaryNode& node, const Box& centres) {
     Split best;
     double best_cost = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis) {
       Split split = {axis, 0, centres.least[axis], bins / (centres.greatest[axis] - centres.least[axis])};
       if (!(split.scale > 0 && split.scale < std::numeric_limits<double>::infinity())) continue;
-      std::array<Bin, bins> bin;
+      std::uint32_t is_filled = 0;  // most bins of a small node are empty
       for (std::size_t i = node.first; i < node.first + node.count; ++i) {
-        Bin& b = bin[static_cast<std::size_t>(split.bin_of(items_[i].centre))];
-        b.box.add(items_[i].box);
-        ++b.count;
+        const int number = split.bin_of(items_[i].centre);
+        Bin& bin = bins_[static_cast<std::size_t>(number)];
+        if ((is_filled >> number & 1U) == 0) bin = {};
+        is_filled |= 1U << number;
+        bin.add({items_[i].box, 1});
       }
-      std::array<double, bins> cost_right = {};  // of the bins behind
+      std::array<int, bins> filled;
+      std::size_t count = 0;
+      for (int number = 0; number < bins; ++number) {
+        if ((is_filled >> number & 1U) != 0) filled[count++] = number;
+      }
+      const auto bin = [&](std::size_t k) -> const Bin& { return bins_[static_cast<std::size_t>(filled[k])]; };
+      std::array<double, bins> cost_right;  // of the bins behind
       Bin right;
-      for (std::size_t k = bins - 1; k > 0; --k) {
-        right.box.add(bin[k].box);
-        right.count += bin[k].count;
-        cost_right[k - 1] = right.box.area() * static_cast<double>(right.count);
+      for (std::size_t k = count - 1; k > 0; --k) {
+        right.add(bin(k));
+        cost_right[k - 1] = right.cost();
       }
       Bin left;
-      for (std::size_t k = 0; k + 1 < bins; ++k) {
-        left.box.add(bin[k].box);
-        left.count += bin[k].count;
-        const double cost = left.box.area() * static_cast<double>(left.count) + cost_right[k];
-        if (left.count > 0 && left.count < node.count && cost < best_cost) {
-          best_cost = cost;
-          best = split;
-          best.bin = static_cast<int>(k);
-        }
+      for (std::size_t k = 0; k + 1 < count; ++k) {
+        left.add(bin(k));
+        const double cost = left.cost() + cost_right[k];
+        if (!(cost < best_cost)) continue;
+        best_cost = cost;
+        best = split;
+        best.bin = filled[k];
       }
     }
     return best;
@@ -232,6 +244,7 @@ class Builder {
 
   TreeOptions options_;
   std::vector<Item> items_;
+  std::array<Bin, bins> bins_;
   std::vector<BinaryNode> nodes_;
 };
 
