@@ -10,9 +10,9 @@ usage: export.py [--out FOLDER] [--mhz F] [TOP...]
 
 FOLDER/TOP holds TOP.v, whose ports have Vivado's interface attributes, with every list rtl/cchip_DEVICE.f a variant
 TOP_DEVICE.v with the multiplier leaf of that device, file lists, constraints, datasheets, licences, a self-checking
-bench with its vectors, TOP.vhd for VHDL, README.md and, of the chip after `make venv`, its IP-XACT component. The
-vectors are those of tests/fusesoc: nothing has to be built. Modules are found by name: one module per file, named like
-it. Exit codes: 0 done, 1 something is missing."""
+bench with its vectors, TOP.vhd for VHDL, of tops with buses TOP_hw.tcl for Platform Designer, README.md and, of the
+chip after `make venv`, its IP-XACT component. The vectors are those of tests/fusesoc: nothing has to be built. Modules
+are found by name: one module per file, named like it. Exit codes: 0 done, 1 something is missing."""
 import argparse
 import csv
 import os
@@ -23,6 +23,7 @@ import subprocess
 import sys
 
 import datasheet
+import hw_tcl
 import interfaces
 import vhdl
 
@@ -286,10 +287,11 @@ def readme(top, files, mhz, described):
     integration = chip_notes(top, mhz) if top in (CHIP, CDC) else ""
     ip_xact = (f"- `{top}.xml`: IP-XACT component, IEEE 1685-2014: buses, registers, ports, parameters.\n"
                if described else "")
+    platform = "; `_hw.tcl`: for Platform Designer, run by no Quartus" if top in (SUBSYSTEM, CHIP, CDC) else ""
     return f"""<!-- SPDX-License-Identifier: Apache-2.0 -->
 # {top}, collisionchip {version()}
 
-- `{top}.v`: the whole RTL in one file, no include folder, top `{top}`; `.f`: as a file list; `.vhd`: its component for VHDL.
+- `{top}.v`: the whole RTL in one file, no include folder, top `{top}`; `.f`: as a file list; `.vhd`: its component for VHDL{platform}.
 {device}{more}{ip_xact}- [Datasheet](docs/modules/{top}.md): ports, parameters, timing, area.
 - `constraints/`: templates for ECP5 (LPF), Vivado (XDC), Quartus and others (SDC), clock {mhz:g} MHz; each says what to change.
 - Licence of the RTL: [Solderpad 2.1](LICENSES/SHL-2.1.txt), or take it as [Apache-2.0](LICENSES/Apache-2.0.txt) like all the rest.
@@ -338,6 +340,14 @@ def write_ip_xact(folder):
     return result.returncode == 0
 
 
+def platform_designer(top, models):
+    """The text of TOP_hw.tcl; models: whether simulation_models.v is in the folder."""
+    files = [(f"{top}.v", "VERILOG", False)]
+    files += [("simulation_models.v", "VERILOG", True)] if models else []
+    files += [("constraints/cdc.sdc", "SDC", False)] if top in CLOCKS else []
+    return hw_tcl.component(top, version().split()[0], files)
+
+
 def export(top, options):
     folder = pathlib.Path(options.out) / top
     shutil.rmtree(folder, ignore_errors=True)
@@ -367,6 +377,8 @@ def export(top, options):
             shutil.copy(VECTORS / f"{name}_chip.hex", folder / f"{name}.hex")
     elif top in KINDS:
         shutil.copy(vectors(top), folder / "vectors.hex")
+    if top in (SUBSYSTEM, CHIP, CDC):
+        (folder / f"{top}_hw.tcl").write_text(platform_designer(top, models))
     described = top == CHIP and write_ip_xact(folder)
     (folder / "README.md").write_text(readme(top, files, mhz, described))
     print(f"wrote {os.path.relpath(folder)}")
@@ -388,7 +400,7 @@ def main():
             if top not in tops:
                 raise ExportError(f"{top} cannot be exported, one of: {' '.join(tops)}")
             export(top, options)
-    except (ExportError, vhdl.VhdlError) as error:
+    except (ExportError, vhdl.VhdlError, hw_tcl.HwTclError) as error:
         print(f"export.py: {error}", file=sys.stderr)
         return 1
     return 0

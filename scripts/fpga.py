@@ -16,7 +16,9 @@ usage: fpga.py [ROW[:SEEDS]...] [options]     without ROW all rows; `fpga.py --l
                     `make campaign-build`); without it there are no pairs per second
   --pairs N         pairs of each class for the mean beats (default 20000)
   --families        only count what the rows that have it take of other families: synthesis alone; --write: into
-                    docs/hardware/fpga-vendors.md
+                    docs/hardware/fpga-vendors.md, where the lines of what did not end stay
+  --family NAME     with --families, of this family alone, as "Gowin"; may be repeated
+  --limit MINUTES   with --families, processor time of each synthesis at most
   --write           rewrite the rows of this run in the generated tables of docs/hardware/fpga.md; other rows stay
   --bill            only the bills by block of the rows that have one (chip_tri, chip): synthesis, without place and
                     route
@@ -54,6 +56,7 @@ import json
 import os
 import pathlib
 import re
+import resource
 import shutil
 import statistics
 import subprocess
@@ -164,7 +167,7 @@ def rows():
              ("MISSES", 16), ("PASSES", 2))
     table += [Row(name, "cchip_chip", (("RM_ID", module), *more), shape="", seeds=3, block=True, synth=" -nowidelut",
                   owners=CHIP_BLOCKS, floorplan=True,
-                  router="router2")
+                  router="router2", families=name == "chip")
               for name, module, more in (("chip_small", 1, small), ("chip_tri", 1, ()), ("chip", 3, ()))]
     return {row.name: row for row in table}
 
@@ -769,8 +772,8 @@ def few_classes(rows):
 
 
 def few_families(rows):
-    """The tests with their default parameters."""
-    names = ("tri_tri", "tri_quad", "quad_quad", "primtest_point_tri")
+    """The tests with their default parameters, and the chip."""
+    names = ("tri_tri", "tri_quad", "quad_quad", "primtest_point_tri", "chip")
     columns = ["family", "LUT", "carry", "FF", "DSP", "block RAM", "distributed RAM", "shift register"]
     return (["row", *columns],
             [[f"`{r['row']}`", *(r[c] for c in columns)] for name in names for r in rows if r["row"] == name])
@@ -906,6 +909,8 @@ def arguments(words=None):
     parser.add_argument("--goal", type=float, default=100)
     parser.add_argument("--picture", type=pathlib.Path)
     parser.add_argument("--heat", type=os.path.abspath)
+    parser.add_argument("--family", action="append", choices=FAMILIES)
+    parser.add_argument("--limit", type=float)
     for flag in ("--families", "--write", "--bill", "--estimate", "--check", "--list", "--no-floorplan"):
         parser.add_argument(flag, action="store_true")
     options = parser.parse_args(words)
@@ -948,13 +953,19 @@ def with_others(name, table, found):
     order of rows(); None if its lines do not begin with the name of their row."""
     order = list(rows())
     row = lambda line: line.split("|")[1].strip(" `")
+    place = lambda line: order.index(row(line))
+    stays = lambda line: row(line) not in found
+    if name == "families":  # a line is of a row and a family
+        family = lambda line: line.split("|")[2].strip()
+        made = {(row(line), family(line)) for line in table.splitlines()[2:]}
+        stays = lambda line: (row(line), family(line)) not in made
+        place = lambda line: (order.index(row(line)), list(FAMILIES).index(family(line)))
     head, lines = table.splitlines()[:2], table.splitlines()[2:]
     if not lines or not all(row(line) in order for line in lines):
         return None
     present = present_table(name)
-    others = [line for line in present[2:] if row(line) in order
-              and row(line) not in found] if present[:2] == head else []
-    return "\n".join([*head, *sorted(others + lines, key=lambda line: order.index(row(line)))]) + "\n"
+    others = [line for line in present[2:] if row(line) in order and stays(line)] if present[:2] == head else []
+    return "\n".join([*head, *sorted(others + lines, key=place)]) + "\n"
 
 
 def command_line(usage, arguments, rows):
@@ -992,6 +1003,24 @@ def show_estimates(chosen, options):
     return 1 if failures else 0
 
 
+def count_families(chosen, options):
+    """--families: exit code 1 if a synthesis failed or did not end."""
+    if options.limit:  # children have it, too
+        seconds = round(60 * options.limit)
+        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
+    failures = []
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        jobs = {row.name: {family: pool.submit(attempt, failures, count_family, row, family)
+                           for family in options.family or FAMILIES} for row in chosen}
+    found = {name: {"families": {family: job.result() for family, job in of.items() if job.result()}}
+             for name, of in jobs.items()}
+    table = families_table(found)
+    print(table)
+    if options.write and any(row["families"] for row in found.values()):
+        write_table("families", with_others("families", table, found))
+    return 1 if failures else 0
+
+
 def main():
     options = command_line(__doc__, arguments, rows)
     if not options:
@@ -1008,15 +1037,7 @@ def main():
             write_table("chip_bill", with_others("chip_bill", table, found) or table)
         return 0
     if options.families:
-        with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-            jobs = {row.name: {family: pool.submit(count_family, row, family) for family in FAMILIES}
-                    for row in chosen if row.families}
-        found = {name: {"families": {family: job.result() for family, job in of.items()}} for name, of in jobs.items()}
-        table = families_table(found)
-        print(table)
-        if options.write:
-            write_table("families", with_others("families", table, found) or table)
-        return 0
+        return count_families([row for row in chosen if row.families], options)
     version(options.nextpnr, "--version")
     if options.estimate:
         return show_estimates(chosen, options)

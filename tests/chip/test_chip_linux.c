@@ -2,22 +2,47 @@
 /*
  * The driver in C over the files of a card. Behind them is a chip of a few lines: registers, rings, an interrupt, and a
  * memory that sees a record as two beats of 64 bits. Over XDMA it answers pread() and pwrite() of the driver, also with
- * faults; over UIO it shares mapped files with the driver, from a thread.
+ * faults; over UIO it shares mapped files with the driver, from a thread. Over VFIO the calls of the kernel are played,
+ * too: each is checked, and fails once.
  */
 #define _GNU_SOURCE
 #define _FILE_OFFSET_BITS 64
+#include <fcntl.h>
+#include <sys/eventfd.h>
+#include <sys/ioctl.h>
+#include <sys/mman.h>
 #include <sys/types.h>
+#include <unistd.h>
 
+static int kernel_open(const char* name, int flags);
+static int kernel_close(int file);
+static int kernel_ioctl(int file, unsigned long request, ...);
+static void* kernel_mmap(void* at, size_t bytes, int protection, int flags, int file, off_t offset);
+static int kernel_munmap(void* at, size_t bytes);
+static int kernel_eventfd(unsigned value, int flags);
 static ssize_t card_pread(int file, void* to, size_t bytes, off_t offset);
 static ssize_t card_pwrite(int file, const void* from, size_t bytes, off_t offset);
+#define open kernel_open
+#define close kernel_close
+#define ioctl kernel_ioctl
+#define mmap kernel_mmap
+#define munmap kernel_munmap
+#define eventfd kernel_eventfd
 #define pread card_pread
 #define pwrite card_pwrite
 #include "chip_linux.c"
+#undef open
+#undef close
+#undef ioctl
+#undef mmap
+#undef munmap
+#undef eventfd
 #undef pread
 #undef pwrite
 
 #include <limits.h>
 #include <pthread.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <sys/socket.h>
 
@@ -44,10 +69,11 @@ static struct card {
   struct beat beats[MANY];
   unsigned first, last; /* of the beats */
   uint32_t taken, written, calls;
-  int event; /* file of the interrupt, -1 none */
-  int armed; /* UIO: the interrupt is not masked */
-  int level; /* of the line, as seen last */
-  int files[3]; /* of the driver: registers, to the card, from the card */
+  int event;     /* file of the interrupt, -1 none */
+  int is_mapped; /* the driver writes the registers without a call */
+  int armed;     /* UIO: the interrupt is not masked */
+  int level;     /* of the line, as seen last */
+  int files[3];  /* of the driver: registers, to the card, from the card */
   /* faults */
   int silent, refuse, gone, bits_of_bytes;
 } card = {.mutex = PTHREAD_MUTEX_INITIALIZER};
@@ -81,7 +107,10 @@ static void step(void) {
     REG(CHIP_CONTROL) = 0;
     reset_card();
   }
-  if (card.armed >= 0 && REG(CHIP_INTERRUPT_STATUS) == CHIP_INTERRUPT_RECORD) REG(CHIP_INTERRUPT_STATUS) = 0;
+  if (card.is_mapped && REG(CHIP_INTERRUPT_STATUS) == CHIP_INTERRUPT_RECORD) {
+    REG(CHIP_INTERRUPT_STATUS) = 0;
+    card.level = 0; /* the line falls for a clock */
+  }
   if (card.first != card.last) {
     const struct beat beat = card.beats[card.first++ % MANY];
     if (beat.offset != MEMORY_BYTES) {
@@ -90,7 +119,7 @@ static void step(void) {
       card.memory[beat.offset / 4 + 1] = beat.words[1];
     } else {
       REG(CHIP_RECORD_PRODUCER) = REG(CHIP_RECORD_PRODUCER) + 1;
-      REG(CHIP_INTERRUPT_STATUS) = REG(CHIP_INTERRUPT_STATUS) | CHIP_INTERRUPT_RECORD | (card.armed >= 0 ? MARK : 0);
+      REG(CHIP_INTERRUPT_STATUS) = REG(CHIP_INTERRUPT_STATUS) | CHIP_INTERRUPT_RECORD | (card.is_mapped ? MARK : 0);
     }
   } else if (!card.silent && REG(CHIP_CONTROL) == CHIP_CONTROL_ENABLE &&
              (uint16_t)REG(CHIP_QUERY_PRODUCER) != (uint16_t)card.taken) {
@@ -105,14 +134,19 @@ static void step(void) {
   if (card.armed >= 0 && recv(card.event, &on, sizeof on, MSG_DONTWAIT) == sizeof on) card.armed = on;
   /* UIO: a level while it is armed. XDMA: an edge */
   if (card.event >= 0 && level && (card.armed > 0 || (card.armed < 0 && !card.level))) {
-    const uint32_t count = 1;
-    if (write(card.event, &count, sizeof count) != sizeof count) abort();
+    const uint64_t count = 1;
+    const size_t bytes = card.armed < 0 && card.is_mapped ? 8 : 4; /* of an eventfd; of the others */
+    if (write(card.event, &count, bytes) != (ssize_t)bytes) abort();
     if (card.armed > 0) card.armed = 0;
   }
   card.level = level;
 }
 
+static ssize_t configuration(void* to, const void* from, size_t bytes, off_t offset);
+static int is_vfio_device(int file);
+
 static ssize_t card_pread(int file, void* to, size_t bytes, off_t offset) {
+  if (is_vfio_device(file)) return configuration(to, NULL, bytes, offset);
   pthread_mutex_lock(&card.mutex);
   if (++card.calls % STEP_EVERY == 0) step();
   ssize_t n = -1;
@@ -136,6 +170,7 @@ static ssize_t card_pread(int file, void* to, size_t bytes, off_t offset) {
 }
 
 static ssize_t card_pwrite(int file, const void* from, size_t bytes, off_t offset) {
+  if (is_vfio_device(file)) return configuration(NULL, from, bytes, offset);
   pthread_mutex_lock(&card.mutex);
   if (++card.calls % STEP_EVERY == 0) step();
   ssize_t n = -1;
@@ -243,6 +278,7 @@ static struct chip over_xdma(struct chip_linux* l) {
   card.memory = memory;
   card.silent = card.refuse = card.gone = card.bits_of_bytes = card.level = 0;
   card.armed = -1;
+  card.is_mapped = 0;
   identify();
   reset_card();
   if (chip_open_xdma(l, path("xdma0"), ADDRESS, MEMORY_BYTES) != 0) abort();
@@ -334,6 +370,7 @@ static void test_mapped(void) {
   card.memory = map(memory, MEMORY_BYTES, 4096);
   if (!card.registers || !card.memory) abort();
   card.silent = 0;
+  card.is_mapped = 1;
   int both[2];
   if (socketpair(AF_UNIX, SOCK_STREAM, 0, both) != 0) abort();
   card.event = both[0];
@@ -369,12 +406,310 @@ static void test_mapped(void) {
   close(memory);
 }
 
+/* ---- VFIO: the calls of the kernel */
+
+static const char GROUP[] = "/dev/vfio/26", DEVICE[] = "0000:01:00.0";
+enum { BAR = 2, BAR_AT = 0x20000, CONFIGURATION_AT = 0x70000, MAPPABLE = 7 };
+
+static const struct vfio {
+  int container, group, device, event; /* files, -1: closed */
+  void *memory, *registers;            /* mappings */
+  int calls, fail_at;                  /* calls so far, and the one that fails */
+  int version, type1, viable, is_pci;
+  uint32_t bar_bytes, bar_flags, msi, msix;
+  int master_sticks, empty; /* of the configuration space */
+  uint8_t command[2];
+  char log[1024];
+} good = {.container = -1,
+          .group = -1,
+          .device = -1,
+          .event = -1,
+          .version = VFIO_API_VERSION,
+          .type1 = 1,
+          .viable = 1,
+          .is_pci = 1,
+          .bar_bytes = 65536,
+          .bar_flags = MAPPABLE,
+          .msi = 1,
+          .msix = 8,
+          .master_sticks = 1,
+          .command = {0, 4}};
+static struct vfio vfio = {.container = -1, .group = -1, .device = -1, .event = -1};
+
+static void note(const char* what) {
+  const size_t used = strlen(vfio.log);
+  snprintf(vfio.log + used, sizeof vfio.log - used, "%s ", what);
+}
+
+/* A call of the driver. \returns whether it fails */
+static int fails(const char* what) {
+  note(what);
+  errno = ENOSPC;
+  return ++vfio.calls == vfio.fail_at;
+}
+
+static int is_vfio_device(int file) { return file >= 0 && file == vfio.device; }
+
+static int any_file(void) {
+  const int file = open("/dev/null", O_RDWR);
+  if (file < 0) abort();
+  return file;
+}
+
+static int kernel_open(const char* name, int flags) {
+  if (strncmp(name, "/dev/vfio/", 10) != 0) return open(name, flags);
+  CHECK(flags == (O_RDWR | O_CLOEXEC));
+  if (fails(name)) return -1;
+  int* const file = strcmp(name, GROUP) == 0 ? &vfio.group : &vfio.container;
+  CHECK(*file < 0);
+  return *file = any_file();
+}
+
+static int kernel_close(int file) {
+  static const char* const names[] = {"-container", "-group", "-device", "-event"};
+  int* const files[] = {&vfio.container, &vfio.group, &vfio.device, &vfio.event};
+  for (unsigned i = 0; i < 4; ++i) {
+    if (*files[i] != file) continue;
+    *files[i] = -1;
+    note(names[i]);
+  }
+  const int code = close(file);
+  errno = EINTR; /* a call that succeeds may change it */
+  return code;
+}
+
+static void* kernel_mmap(void* at, size_t bytes, int protection, int flags, int file, off_t offset) {
+  const int anonymous = MAP_SHARED | MAP_ANONYMOUS, both = PROT_READ | PROT_WRITE;
+  if (!is_vfio_device(file) && !(flags & MAP_ANONYMOUS)) return mmap(at, bytes, protection, flags, file, offset);
+  const int is_bar = is_vfio_device(file);
+  CHECK(protection == both && flags == (is_bar ? MAP_SHARED : anonymous));
+  CHECK(bytes == (is_bar ? REGISTER_BYTES : MEMORY_BYTES) && offset == (is_bar ? BAR_AT : 0));
+  if (fails(is_bar ? "bar" : "memory")) return MAP_FAILED;
+  void* const made = mmap(NULL, bytes, both, anonymous, -1, 0);
+  if (made == MAP_FAILED) abort();
+  return *(is_bar ? &vfio.registers : &vfio.memory) = made;
+}
+
+static int kernel_munmap(void* at, size_t bytes) {
+  if (at == vfio.registers) note("-bar");
+  if (at == vfio.memory) note("-memory");
+  CHECK(at != vfio.memory || bytes == MEMORY_BYTES);
+  if (at == vfio.registers) vfio.registers = NULL;
+  if (at == vfio.memory) vfio.memory = NULL;
+  const int code = munmap(at, bytes);
+  errno = EINTR;
+  return code;
+}
+
+static int kernel_eventfd(unsigned value, int flags) {
+  CHECK(value == 0 && flags == (EFD_CLOEXEC | EFD_NONBLOCK));
+  return fails("eventfd") ? -1 : (vfio.event = eventfd(value, flags));
+}
+
+static ssize_t configuration(void* to, const void* from, size_t bytes, off_t offset) {
+  CHECK(bytes == 2 && offset == CONFIGURATION_AT + 4);
+  if (fails(to ? "read" : "write")) return -1;
+  if (vfio.empty) return 0;
+  if (to) memcpy(to, vfio.command, 2);
+  if (from && vfio.master_sticks) memcpy(vfio.command, from, 2);
+  return 2;
+}
+
+static int kernel_ioctl(int file, unsigned long request, ...) {
+  va_list rest;
+  va_start(rest, request);
+  void* to = NULL;
+  int number = 0;
+  if (request == VFIO_CHECK_EXTENSION || request == VFIO_SET_IOMMU)
+    number = va_arg(rest, int);
+  else if (request != VFIO_GET_API_VERSION)
+    to = va_arg(rest, void*);
+  va_end(rest);
+  const int owner =
+      request == VFIO_GET_API_VERSION || request == VFIO_CHECK_EXTENSION || request == VFIO_SET_IOMMU ||
+              request == VFIO_IOMMU_MAP_DMA
+          ? vfio.container
+      : request == VFIO_GROUP_GET_STATUS || request == VFIO_GROUP_SET_CONTAINER || request == VFIO_GROUP_GET_DEVICE_FD
+          ? vfio.group
+          : vfio.device;
+  CHECK(file >= 0 && file == owner);
+  char text[16];
+  switch (request) {
+    case VFIO_GET_API_VERSION:
+      return fails("version") ? -1 : vfio.version;
+    case VFIO_CHECK_EXTENSION:
+      CHECK(number == VFIO_TYPE1v2_IOMMU);
+      return fails("type1") ? -1 : vfio.type1;
+    case VFIO_SET_IOMMU:
+      CHECK(number == VFIO_TYPE1v2_IOMMU);
+      return fails("iommu") ? -1 : 0;
+    case VFIO_GROUP_GET_STATUS: {
+      struct vfio_group_status* status = to;
+      CHECK(status->argsz == sizeof *status);
+      status->flags = vfio.viable ? VFIO_GROUP_FLAGS_VIABLE : 0;
+      return fails("status") ? -1 : 0;
+    }
+    case VFIO_GROUP_SET_CONTAINER:
+      CHECK(*(int*)to == vfio.container);
+      return fails("container") ? -1 : 0;
+    case VFIO_IOMMU_MAP_DMA: {
+      const struct vfio_iommu_type1_dma_map* window = to;
+      CHECK(window->argsz == sizeof *window && window->vaddr == (uintptr_t)vfio.memory);
+      CHECK(window->iova == ADDRESS && window->size == MEMORY_BYTES);
+      CHECK(window->flags == (VFIO_DMA_MAP_FLAG_READ | VFIO_DMA_MAP_FLAG_WRITE));
+      return fails("dma") ? -1 : 0;
+    }
+    case VFIO_GROUP_GET_DEVICE_FD:
+      CHECK(strcmp(to, DEVICE) == 0);
+      return fails("device") ? -1 : (vfio.device = any_file());
+    case VFIO_DEVICE_GET_INFO: {
+      struct vfio_device_info* info = to;
+      CHECK(info->argsz == sizeof *info);
+      info->flags = vfio.is_pci ? VFIO_DEVICE_FLAGS_PCI : VFIO_DEVICE_FLAGS_PLATFORM;
+      return fails("info") ? -1 : 0;
+    }
+    case VFIO_DEVICE_GET_REGION_INFO: {
+      struct vfio_region_info* region = to;
+      CHECK(region->argsz == sizeof *region);
+      const int is_bar = region->index == BAR;
+      CHECK(is_bar || region->index == VFIO_PCI_CONFIG_REGION_INDEX);
+      region->offset = is_bar ? BAR_AT : CONFIGURATION_AT;
+      region->size = is_bar ? vfio.bar_bytes : 4096;
+      region->flags = is_bar ? vfio.bar_flags : 3;
+      snprintf(text, sizeof text, "region%u", region->index);
+      return fails(text) ? -1 : 0;
+    }
+    case VFIO_DEVICE_GET_IRQ_INFO: {
+      struct vfio_irq_info* info = to;
+      CHECK(info->argsz == sizeof *info);
+      info->count = info->index == VFIO_PCI_MSI_IRQ_INDEX ? vfio.msi : vfio.msix;
+      info->flags = VFIO_IRQ_INFO_EVENTFD;
+      snprintf(text, sizeof text, "irq%u", info->index);
+      return fails(text) ? -1 : 0;
+    }
+    case VFIO_DEVICE_SET_IRQS: {
+      const struct vfio_irq_set* set = to;
+      int32_t event;
+      memcpy(&event, set->data, sizeof event);
+      CHECK(set->argsz == sizeof *set + 4 && set->start == 0 && set->count == 1 && event == vfio.event);
+      CHECK(set->index == (vfio.msi ? VFIO_PCI_MSI_IRQ_INDEX : VFIO_PCI_MSIX_IRQ_INDEX));
+      CHECK(set->flags == (VFIO_IRQ_SET_DATA_EVENTFD | VFIO_IRQ_SET_ACTION_TRIGGER));
+      return fails("set") ? -1 : 0;
+    }
+    default:
+      CHECK(!"an ioctl that VFIO has not");
+      return -1;
+  }
+}
+
+static int open_vfio(struct chip_linux* l) { return chip_open_vfio(l, GROUP, DEVICE, BAR, ADDRESS, MEMORY_BYTES); }
+
+static int is_shut(const struct chip_linux* l) {
+  return vfio.container < 0 && vfio.group < 0 && vfio.device < 0 && vfio.event < 0 && !vfio.memory && !vfio.registers &&
+         l->registers < 0 && l->events < 0 && l->container < 0 && l->group < 0 && !l->memory_words &&
+         !l->register_words;
+}
+
+#define OPENED                                                                                                   \
+  "/dev/vfio/vfio version type1 /dev/vfio/26 status container iommu memory dma device info region2 bar region7 " \
+  "read write read "
+
+static void test_vfio_calls(void) {
+  struct chip_linux l;
+  vfio = good;
+  CHECK(open_vfio(&l) == 0);
+  const int calls = vfio.calls;
+  CHECK(calls == 20 && vfio.command[0] == 6 && vfio.command[1] == 4 && l.events >= 0);
+  chip_close(&l);
+  CHECK(strcmp(vfio.log, OPENED "irq1 eventfd set -bar -event -device -group -container -memory ") == 0);
+  CHECK(is_shut(&l));
+  for (int i = 1; i <= calls; ++i) { /* each call fails */
+    vfio = good;
+    vfio.fail_at = i;
+    errno = 0;
+    CHECK(open_vfio(&l) != 0 && errno == ENOSPC && strstr(l.error, strerror(ENOSPC)) && vfio.calls == i);
+    CHECK(strstr(l.error, DEVICE) || strstr(l.error, GROUP) || strstr(l.error, "/dev/vfio/vfio") ||
+          strstr(l.error, "the memory"));
+    CHECK(is_shut(&l));
+  }
+}
+
+static void test_vfio_answers(void) {
+  struct chip_linux l;
+  const struct {
+    int* what;
+    int value, why;
+    const char* text;
+  } faults[] = {
+      {&vfio.version, 1, EPROTONOSUPPORT, "VFIO_GET_API_VERSION of /dev/vfio/vfio"},
+      {&vfio.type1, 0, EOPNOTSUPP, "no IOMMU of type 1 behind /dev/vfio/vfio"},
+      {&vfio.viable, 0, EBUSY, "a device of another driver in /dev/vfio/26"},
+      {&vfio.is_pci, 0, ENODEV, "no such BAR of 0000:01:00.0"},
+      {(int*)&vfio.bar_bytes, 2048, ENODEV, "no room for registers in the BAR of 0000:01:00.0"},
+      {(int*)&vfio.bar_flags, 3, EOPNOTSUPP, "cannot map the BAR of 0000:01:00.0"},
+      {&vfio.master_sticks, 0, EIO, "no bus master in 0000:01:00.0"},
+      {&vfio.empty, 1, EIO, "read the command word of 0000:01:00.0"},
+  };
+  for (unsigned i = 0; i < sizeof faults / sizeof faults[0]; ++i) {
+    vfio = good;
+    *faults[i].what = faults[i].value;
+    errno = 0;
+    CHECK(open_vfio(&l) != 0 && errno == faults[i].why && is_shut(&l));
+    char want[160];
+    snprintf(want, sizeof want, "%s: %s", faults[i].text, strerror(faults[i].why));
+    CHECK(strcmp(l.error, want) == 0);
+  }
+  vfio = good;
+  CHECK(chip_open_vfio(&l, GROUP, DEVICE, 6, ADDRESS, MEMORY_BYTES) != 0 && errno == ENODEV && is_shut(&l));
+  vfio = good;
+  CHECK(chip_open_vfio(&l, GROUP, DEVICE, BAR, ADDRESS, CHIP_IMAGES - 4) != 0 && errno == EINVAL && vfio.calls == 0);
+}
+
+static void test_vfio_queries(void) {
+  for (int kind = 0; kind < 3; ++kind) { /* MSI, MSI-X, neither */
+    static const char* const ends[] = {OPENED "irq1 eventfd set ", OPENED "irq1 irq2 eventfd set ",
+                                       OPENED "irq1 irq2 "};
+    struct chip_linux l;
+    struct chip_record record;
+    const uint32_t query[16] = {7};
+    vfio = good;
+    if (kind > 0) vfio.msi = 0;
+    if (kind > 1) vfio.msix = 0;
+    CHECK(open_vfio(&l) == 0 && strcmp(vfio.log, ends[kind]) == 0);
+    card.registers = vfio.registers;
+    card.memory = vfio.memory;
+    card.silent = card.level = 0;
+    card.is_mapped = 1;
+    card.armed = -1;
+    card.event = l.events;
+    CHECK((l.events >= 0) == (kind < 2));
+    identify();
+    reset_card();
+    REG(CHIP_STATUS) = CHIP_STATUS_RESETTING;
+    REG(CHIP_INTERRUPT_ENABLE) = CHIP_INTERRUPT_RECORD;
+    pthread_t thread = start_thread();
+    struct chip chip = {.address = ADDRESS, .port = &l.port, .limit_us = LONG, .confirm_records = 1};
+    CHECK(chip_start(&chip) == CHIP_OK);
+    CHECK(wrong_answers(&chip, 100, BY_INTERRUPT) == 0);
+    CHECK(wrong_answers(&chip, 100, BY_POLLING) == 0);
+    card.silent = 1;
+    CHECK(chip_submit(&chip, query) == CHIP_OK);
+    const uint64_t before = now(NULL);
+    CHECK(chip_wait(&chip, &record, 20000) == CHIP_TIMEOUT && now(NULL) - before >= 20000);
+    stop_thread(thread);
+    chip_close(&l);
+    CHECK(is_shut(&l));
+  }
+  card.event = -1;
+}
+
 static void test_opening(void) {
   struct chip_linux l;
   errno = 0;
   CHECK(chip_open_xdma(&l, path("none"), ADDRESS, MEMORY_BYTES) != 0 && errno == ENOENT);
   CHECK(chip_open_uio(&l, path("uio0"), path("none"), 0, MEMORY_BYTES) != 0 && errno == ENOENT);
   CHECK(l.register_words == NULL && l.registers == -1);
+  CHECK(strstr(l.error, path("none")) && strstr(l.error, strerror(ENOENT)));
   CHECK(chip_open_xdma(&l, path("xdma0"), ADDRESS, CHIP_IMAGES - 4) != 0 && errno == EINVAL);
   CHECK(chip_clocks(60, 68) == 4080 && chip_clocks(0, 68) == 1 && chip_clocks(UINT32_MAX, 2) == UINT32_MAX);
 }
@@ -393,6 +728,9 @@ int main(void) {
   close(card.event);
   test_mapped();
   test_opening();
+  test_vfio_calls();
+  test_vfio_answers();
+  test_vfio_queries();
   const char* const names[] = {"xdma0_user", "xdma0_h2c_0", "xdma0_c2h_0", "xdma0_events_0", "uio0", "memory"};
   for (unsigned i = 0; i < sizeof names / sizeof names[0]; ++i) unlink(path(names[i]));
   rmdir(folder);

@@ -242,6 +242,15 @@ class Export(unittest.TestCase):
         path.write_text(text)
         return str(path)
 
+    def test_files_of_platform_designer(self):
+        path = self.folder / f"{TOP}_hw.tcl"
+        self.assertEqual(path.exists(), TOP in (SUBSYSTEM, CHIP, CDC))
+        if path.exists():
+            names = re.findall(r"^add_fileset_file \S+ \w+ PATH (\S+)$", path.read_text(), re.M)
+            self.assertEqual(len(names), 3 + (TOP == CDC))
+            for name in names:
+                self.assertTrue((self.folder / name).is_file(), name)
+
     def test_links_of_the_pages(self):
         pages = list(self.folder.rglob("*.md"))
         self.assertIn(self.folder / "docs" / "modules" / f"{TOP}.md", pages)

@@ -14,6 +14,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
@@ -124,6 +125,30 @@ class Reports(unittest.TestCase):
         self.assertEqual(fpga.area_table(found).count("\n"), 2 + 2)
         self.assertEqual(fpga.classes_table(found).count("\n"), 2 + 2)
         self.assertEqual(fpga.families_table(found).count("\n"), 2 + 2 * len(fpga.FAMILIES))
+
+    def test_families_that_were_not_counted_keep_their_lines(self):
+        counts = {column: 12345 for column in fpga.FAMILIES["Gowin"][1]}
+        found = {"tri_tri": {"families": {"Gowin": counts}}, "quad_quad": {"families": {}}}
+        before = fpga.present_table("families")
+        after = fpga.with_others("families", fpga.families_table(found), found).splitlines()
+        self.assertEqual(len(after), len(before))
+        changed = [(old, new) for old, new in zip(before, after) if old != new]
+        self.assertEqual(len(changed), 1)
+        self.assertRegex(changed[0][0], r"^\| `?tri_tri`? \| Gowin \|")
+        self.assertIn("12345", changed[0][1])
+
+    def test_a_family_that_does_not_end_leaves_the_others(self):
+        def count(row, family):
+            if family == "Gowin":
+                raise fpga.ToolError("yosys failed (exit code -9)")
+            return {**{column: 1 for column in fpga.FAMILIES[family][1]}, "packed": 0}
+
+        options = fpga.arguments(["chip", "--families", "--family", "Gowin", "--family", "GateMate"])
+        with unittest.mock.patch.object(fpga, "count_family", count), unittest.mock.patch("builtins.print") as said, \
+                unittest.mock.patch.object(fpga, "say"):
+            self.assertEqual(fpga.count_families([fpga.rows()["chip"]], options), 1)
+        self.assertIn("| `chip` | GateMate | 1 |", said.call_args[0][0])
+        self.assertNotIn("Gowin", said.call_args[0][0])
 
     def test_page_has_a_place_for_every_table(self):
         for name in (*fpga.TABLES, *fpga.SUBSYSTEMS, "families"):
