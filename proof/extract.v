@@ -1,9 +1,11 @@
 (* SPDX-License-Identifier: Apache-2.0 *)
-(** Prints what the theorem rests on, and writes the checker as OCaml over the integers of [integer.ml]. *)
-From Certificates Require Import statement checker soundness.
+(** Prints what the theorems rest on, and writes the checker as OCaml over the integers of [integer.ml]. *)
+From Certificates Require Import statement checker soundness axes.
 Require Import ZArith Extraction ExtrOcamlBasic.
 
 Print Assumptions accepted_holds.
+Print Assumptions axes_decide.
+Print Assumptions seventeen_axes.
 
 Extract Inductive positive => "Integer.t"
   [ "Integer.twice_plus_one" "Integer.twice" "Integer.one" ] "Integer.cases_of_positive".
