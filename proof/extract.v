@@ -1,11 +1,13 @@
 (* SPDX-License-Identifier: Apache-2.0 *)
 (** Prints what the theorems rest on, and writes the checker as OCaml over the integers of [integer.ml]. *)
-From Certificates Require Import statement checker soundness axes.
+From Certificates Require Import statement checker soundness axes directed.
 Require Import ZArith Extraction ExtrOcamlBasic.
 
 Print Assumptions accepted_holds.
 Print Assumptions axes_decide.
 Print Assumptions seventeen_axes.
+Print Assumptions two_axes_decide.
+Print Assumptions directed_is_exhaustive.
 
 Extract Inductive positive => "Integer.t"
   [ "Integer.twice_plus_one" "Integer.twice" "Integer.one" ] "Integer.cases_of_positive".
