@@ -12,10 +12,10 @@ Definition separates (A B : list point) (L : point) : Prop :=
   (forall a b, In a A -> In b B -> dotq L a < dotq L b) \/ (forall a b, In a A -> In b B -> dotq L b < dotq L a).
 Definition zero (p : point) : Prop := x p == 0 /\ y p == 0 /\ z p == 0.
 
-Inductive component := X | Y | Z.
+Inductive component := Ux | Uy | Uz.
 Definition unit (k : component) : point :=
-  match k with X => Triple 1 0 0 | Y => Triple 0 1 0 | Z => Triple 0 0 1 end.
-Definition all_units : list point := [unit X; unit Y; unit Z].
+  match k with Ux => Triple 1 0 0 | Uy => Triple 0 1 0 | Uz => Triple 0 0 1 end.
+Definition all_units : list point := [unit Ux; unit Uy; unit Uz].
 
 Definition cross_axes (es fs : list point) : list point := flat_map (fun e => map (cofactors e) fs) es.
 
@@ -49,9 +49,9 @@ Proof.
 Qed.
 Lemma component_not_zero p : ~ zero p -> exists k, ~ dotq (unit k) p == 0.
 Proof.
-  intros H. destruct (Qeq_dec (x p) 0) as [Ex |]; [| exists X; unfold dotq; cbn; lra].
-  destruct (Qeq_dec (y p) 0) as [Ey |]; [| exists Y; unfold dotq; cbn; lra].
-  exists Z. unfold dotq; cbn. intros E. apply H. unfold zero. repeat split; lra.
+  intros H. destruct (Qeq_dec (x p) 0) as [Ex |]; [| exists Ux; unfold dotq; cbn; lra].
+  destruct (Qeq_dec (y p) 0) as [Ey |]; [| exists Uy; unfold dotq; cbn; lra].
+  exists Uz. unfold dotq; cbn. intros E. apply H. unfold zero. repeat split; lra.
 Qed.
 
 Ltac coordinates := unfold dotq, cofactors, minus; cbn [x y z]; try ring.
@@ -59,7 +59,7 @@ Lemma lagrange a b c : dotq a a * dotq b c == dotq a b * dotq a c + dotq (cofact
 Proof. coordinates. Qed.
 Lemma zero_products v : (forall p, dotq v p == 0) -> zero v.
 Proof.
-  intros H. pose proof (H (unit X)) as Hx. pose proof (H (unit Y)) as Hy. pose proof (H (unit Z)) as Hz.
+  intros H. pose proof (H (unit Ux)) as Hx. pose proof (H (unit Uy)) as Hy. pose proof (H (unit Uz)) as Hz.
   unfold dotq in *; cbn in *. repeat split; lra.
 Qed.
 Lemma double_product L u v q : dotq (cofactors L (cofactors u v)) q == dotq L v * dotq u q - dotq L u * dotq v q.
