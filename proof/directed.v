@@ -326,7 +326,7 @@ End Line.
 
 (** * The schedules decide *)
 
-Lemma turned_edge T k : exists p m v, turned T k = (p, m, v) /\ In p (corners T) /\ In m (corners T) /\ 
+Lemma turned_edge T k : exists p m v, turned T k = (p, m, v) /\ In p (corners T) /\ In m (corners T) /\
   ((k < 3)%nat -> edge_number T k = minus m p).
 Proof.
   destruct T as ((p, q), r). destruct k as [| [| [| k]]]; cbn [turned]; do 3 eexists; (split; [reflexivity |]);
