@@ -235,6 +235,11 @@ Proof.
   rewrite !dotq_minus in *. split; lra.
 Qed.
 
+(** All of A on one side of a, or level with it, all of B beyond: what the hardware asks of an in-plane axis *)
+Definition faces (A B : list point) (a w : point) : Prop :=
+  ((forall v, In v A -> dotq w v <= dotq w a) /\ (forall u, In u B -> dotq w a < dotq w u)) \/
+  ((forall v, In v A -> dotq w a <= dotq w v) /\ (forall u, In u B -> dotq w u < dotq w a)).
+
 (** The kinds of axes that polytopes need: products of two sides, each of A or of B; in a plane N through all
     differences, products of a side with a unit vector; on a line d of all differences, unit vectors. *)
 Inductive listed : Prop :=
@@ -243,9 +248,11 @@ Inductive listed : Prop :=
 | by_both a a' b b' : In a A -> In a' A -> In b B -> In b' B ->
     separates A B (cofactors (minus a a') (minus b b')) -> listed
 | in_plane_a N a a' : ~ zero N -> (forall d, In d D -> dotq N d == 0) -> In a A -> In a' A ->
-    (forall k, ~ dotq N (unit k) == 0 -> separates A B (cofactors (minus a a') (unit k))) -> listed
+    (forall k, ~ dotq N (unit k) == 0 -> separates A B (cofactors (minus a a') (unit k)) /\
+      faces A B a (cofactors (minus a a') (unit k))) -> listed
 | in_plane_b N b b' : ~ zero N -> (forall d, In d D -> dotq N d == 0) -> In b B -> In b' B ->
-    (forall k, ~ dotq N (unit k) == 0 -> separates A B (cofactors (minus b b') (unit k))) -> listed
+    (forall k, ~ dotq N (unit k) == 0 -> separates A B (cofactors (minus b b') (unit k)) /\
+      faces B A b (cofactors (minus b b') (unit k))) -> listed
 | on_line d1 k : In d1 D -> ~ zero d1 -> (forall d, In d D -> zero (cofactors d1 d)) -> separates A B (unit k) -> listed.
 
 Lemma separates_product L u v : (forall d, In d D -> 1 <= dotq L d) -> dotq L u == 0 -> dotq L v == 0 ->
@@ -256,18 +263,17 @@ Proof.
   intros d _. now apply parallel.
 Qed.
 
-Lemma separates_in_plane L N e k : (forall d, In d D -> 1 <= dotq L d) -> ~ zero N -> ~ zero e ->
-  (forall d, In d D -> dotq N d == 0) -> dotq L e == 0 -> dotq N e == 0 -> ~ dotq N (unit k) == 0 ->
-  separates A B (cofactors e (unit k)).
+Lemma in_plane_parallel L N e k : ~ zero N -> ~ zero e -> dotq L e == 0 -> dotq N e == 0 -> ~ dotq N (unit k) == 0 ->
+  exists al be, ~ al == 0 /\ forall d, dotq N d == 0 -> al * dotq L d == be * dotq (cofactors e (unit k)) d.
 Proof.
-  intros H Nn Ne P Le Pe K. apply positive_square in Nn, Ne.
+  intros Nn Ne Le Pe K. apply positive_square in Nn, Ne.
   set (g := cofactors e N). set (nu := dotq N (unit k)) in *.
   assert (0 < dotq g g) as G.
   { assert (dotq g g == dotq e e * dotq N N - dotq N e * dotq N e) as -> by (unfold g; coordinates).
     rewrite Pe. nra. }
-  apply (separates_by L _ (nu * dotq g g) (dotq L g * dotq N N)); [| auto |].
+  exists (nu * dotq g g), (dotq L g * dotq N N). split.
   { intros E. assert (nu == 0) by nra. auto. }
-  intros d I. apply P in I.
+  intros d I.
   set (M := moved (moved (Triple 0 0 0) (dotq N N) L) (- dotq L N) N).
   assert (forall p, dotq M p == dotq N N * dotq L p - dotq L N * dotq N p) as HM.
   { intros p. unfold M, moved, dotq; cbn. ring. }
@@ -285,6 +291,35 @@ Proof.
   assert (G' * l == Lg * gd) as E3 by nra.
   assert (nu * G' * l == nu * (G' * l)) as -> by ring. rewrite E3.
   assert (Lg * n * w == Lg * (n * w)) as -> by ring. rewrite E2. ring.
+Qed.
+
+Lemma separates_in_plane L N e k : (forall d, In d D -> 1 <= dotq L d) -> ~ zero N -> ~ zero e ->
+  (forall d, In d D -> dotq N d == 0) -> dotq L e == 0 -> dotq N e == 0 -> ~ dotq N (unit k) == 0 ->
+  separates A B (cofactors e (unit k)).
+Proof.
+  intros H Nn Ne P Le Pe K. destruct (in_plane_parallel L N e k Nn Ne Le Pe K) as (al & be & Al & E).
+  apply (separates_by L _ al be); auto.
+Qed.
+
+Lemma faces_in_plane vs us o u0 L N e k : In u0 us -> ~ zero N -> ~ zero e -> dotq L e == 0 -> dotq N e == 0 -> ~ dotq N (unit k) == 0 ->
+  (forall v, In v vs -> dotq N (minus v o) == 0) -> (forall u, In u us -> dotq N (minus u o) == 0) ->
+  (forall v, In v vs -> 0 <= dotq L (minus v o)) -> (forall u, In u us -> dotq L (minus u o) < 0) ->
+  faces vs us o (cofactors e (unit k)).
+Proof.
+  intros I0 Nn Ne Le Pe K Nv Nu Lv Lu. destruct (in_plane_parallel L N e k Nn Ne Le Pe K) as (al & be & Al & E).
+  set (w := cofactors e (unit k)) in *.
+  assert (0 < al * al) as Sq by (destruct (Q_dec al 0) as [[|]|]; [nra | nra | tauto]).
+  assert (forall p, dotq N p == 0 -> al * al * dotq L p == al * be * dotq w p) as F.
+  { intros p Z. apply E in Z. setoid_replace (al * be * dotq w p) with (al * (be * dotq w p)) by ring. rewrite <- Z. ring. }
+  clear E. set (sq := al * al) in *. set (g := al * be) in *.
+  assert (forall v, In v vs -> 0 <= g * (dotq w v - dotq w o)) as Gv.
+  { intros v I. rewrite <- dotq_minus, <- F by auto. apply Lv in I. nra. }
+  assert (forall u, In u us -> g * (dotq w u - dotq w o) < 0) as Gu.
+  { intros u I. rewrite <- dotq_minus, <- F by auto. apply Lu in I. nra. }
+  assert (~ g == 0) by (intros Z; apply Gu in I0; rewrite Z in I0; lra).
+  clearbody g w. destruct (Qlt_le_dec 0 g) as [Pos | Neg]; [| assert (g < 0) by lra].
+  - right. split; [intros v I; apply Gv in I | intros u I; apply Gu in I]; nra.
+  - left. split; [intros v I; apply Gv in I | intros u I; apply Gu in I]; nra.
 Qed.
 
 Theorem apart_listed : A <> [] -> B <> [] -> ~ meet A B -> listed.
@@ -317,9 +352,25 @@ Proof.
     destruct (held_level L a1 b1 a2 b2 H1 A1 B1 A2 B2 T1 T2) as (U & V).
     destruct (plane_level M a1 a2 b1 b2 P A1 A2 B1 B2) as (U' & V').
     destruct (zero_dec (minus a1 a2)) as [(X1 & Y1 & Z1) | Na].
-    2: { apply (in_plane_a M a1 a2); auto. intros k K. now apply (separates_in_plane L M). }
+    2: { apply (in_plane_a M a1 a2); auto. intros k K. split; [now apply (separates_in_plane L M) |].
+      apply (faces_in_plane A B a1 b1 L M); auto.
+      - intros v I. now apply (plane_level M v a1 b1 b1).
+      - intros u I. assert (dotq M (minus a1 u) == 0) as E by (apply P, in_differences; eauto).
+        rewrite dotq_minus in *. lra.
+      - intros v I. assert (1 <= dotq L (minus v b1)) as E by (apply H1, in_differences; eauto).
+        rewrite dotq_minus in *. lra.
+      - intros u I. assert (1 <= dotq L (minus a1 u)) as E by (apply H1, in_differences; eauto).
+        rewrite dotq_minus in *. lra. }
     destruct (zero_dec (minus b1 b2)) as [(X2 & Y2 & Z2) | Nb].
-    2: { apply (in_plane_b M b1 b2); auto. intros k K. now apply (separates_in_plane L M). }
+    2: { apply (in_plane_b M b1 b2); auto. intros k K. split; [now apply (separates_in_plane L M) |].
+      apply (faces_in_plane B A b1 a1 (opposite L) M); auto.
+      - rewrite dotq_opposite, V. ring.
+      - intros v I. now apply (plane_level M a1 a1 v b1).
+      - intros u I. assert (dotq M (minus u b1) == 0) as E by (apply P, in_differences; eauto). auto.
+      - intros v I. assert (1 <= dotq L (minus a1 v)) as E by (apply H1, in_differences; eauto).
+        rewrite dotq_opposite. rewrite dotq_minus in *. lra.
+      - intros u I. assert (1 <= dotq L (minus u b1)) as E by (apply H1, in_differences; eauto).
+        rewrite dotq_opposite. rewrite dotq_minus in *. lra. }
     exfalso. apply N. unfold M, zero. rewrite <- E1, <- E2. unfold cofactors, minus in *; cbn in *.
     assert (x a2 == x a1) as -> by lra. assert (y a2 == y a1) as -> by lra. assert (z a2 == z a1) as -> by lra.
     assert (x b2 == x b1) as -> by lra. assert (y b2 == y b1) as -> by lra. assert (z b2 == z b1) as -> by lra.
@@ -434,11 +485,18 @@ Qed.
 Lemma cofactors_zero u v : zero u \/ zero v -> zero (cofactors u v).
 Proof. unfold zero, cofactors; cbn. intros [(-> & -> & ->) | (-> & -> & ->)]; repeat split; ring. Qed.
 
-Theorem axes_complete A B : ~ meet (corners A) (corners B) ->
+(** The one side of an edge at which the hardware looks. *)
+Definition one_sided (d : component) (A B : triangle) : Prop :=
+  (exists a a', In a (corners A) /\ In a' (corners A) /\
+     faces (corners A) (corners B) a (cofactors (minus a a') (unit d))) \/
+  (exists b b', In b (corners B) /\ In b' (corners B) /\
+     faces (corners B) (corners A) b (cofactors (minus b b') (unit d))).
+
+Theorem axes_one_sided A B : ~ meet (corners A) (corners B) ->
   some_axis A B (general_axes A B) \/
   (degenerate A B /\ some_axis A B (degenerate_axes A B)) \/
   (~ degenerate A B /\ coplanar A B /\
-   forall d, ~ dotq (normal A) (unit d) == 0 -> some_axis A B (in_plane_axes d A B)).
+   forall d, ~ dotq (normal A) (unit d) == 0 -> some_axis A B (in_plane_axes d A B) /\ one_sided d A B).
 Proof.
   intros H.
   assert (corners A <> [] /\ corners B <> []) as (NA & NB).
@@ -481,30 +539,32 @@ Proof.
     [apply in_or_app; right; apply in_cross_axes; eauto | now apply (separates_cofactors A B e f _ _ s t E F)]).
   - right; left. split; auto. destruct (component_not_zero N Nz) as (k & K). rewrite dotq_comm in K.
     destruct (side_of A a a' I I') as [Z | (e & s & IE & _ & E)];
-      [exfalso; apply (not_zero_axis A B _ (S k K)), cofactors_zero; auto |].
+      [exfalso; apply (not_zero_axis A B _ (proj1 (S k K))), cofactors_zero; auto |].
     exists (cofactors e (unit k)). split.
     + apply in_or_app; left. apply in_cross_axes. exists e, (unit k). destruct k; cbn; auto 6.
-    + apply (separates_cofactors A B e (unit k) (minus a a') (unit k) s 1 E); [intros; ring | auto].
+    + apply (separates_cofactors A B e (unit k) (minus a a') (unit k) s 1 E); [intros; ring | apply S; auto].
   - right; left. split; auto. destruct (component_not_zero N Nz) as (k & K). rewrite dotq_comm in K.
     destruct (side_of B b b' I I') as [Z | (e & s & IE & _ & E)];
-      [exfalso; apply (not_zero_axis A B _ (S k K)), cofactors_zero; auto |].
+      [exfalso; apply (not_zero_axis A B _ (proj1 (S k K))), cofactors_zero; auto |].
     exists (cofactors e (unit k)). split.
     + apply in_or_app; right. apply in_or_app; left. apply in_cross_axes. exists e, (unit k). destruct k; cbn; auto 6.
-    + apply (separates_cofactors A B e (unit k) (minus b b') (unit k) s 1 E); [intros; ring | auto].
+    + apply (separates_cofactors A B e (unit k) (minus b b') (unit k) s 1 E); [intros; ring | apply S; auto].
   - right; left. split; auto. exists (unit k). split; auto.
     apply in_or_app; right. apply in_or_app; right. destruct k; cbn; auto.
   - right; right. split; auto. split; [now apply (Co N) |]. intros d K. apply (Comp N d Nz P) in K.
+    split; [| left; exists a, a'; split; auto; split; auto; now apply S].
     destruct (side_of A a a' I I') as [Z | (e & s & IE & _ & E)];
-      [exfalso; apply (not_zero_axis A B _ (S d K)), cofactors_zero; auto |].
+      [exfalso; apply (not_zero_axis A B _ (proj1 (S d K))), cofactors_zero; auto |].
     exists (cofactors e (unit d)). split.
     + apply in_or_app; left. apply in_cross_axes. exists e, (unit d). cbn; auto.
-    + apply (separates_cofactors A B e (unit d) (minus a a') (unit d) s 1 E); [intros; ring | auto].
+    + apply (separates_cofactors A B e (unit d) (minus a a') (unit d) s 1 E); [intros; ring | apply S; auto].
   - right; right. split; auto. split; [now apply (Co N) |]. intros d K. apply (Comp N d Nz P) in K.
+    split; [| right; exists b, b'; split; auto; split; auto; now apply S].
     destruct (side_of B b b' I I') as [Z | (e & s & IE & _ & E)];
-      [exfalso; apply (not_zero_axis A B _ (S d K)), cofactors_zero; auto |].
+      [exfalso; apply (not_zero_axis A B _ (proj1 (S d K))), cofactors_zero; auto |].
     exists (cofactors e (unit d)). split.
     + apply in_or_app; right. apply in_cross_axes. exists e, (unit d). cbn; auto.
-    + apply (separates_cofactors A B e (unit d) (minus b b') (unit d) s 1 E); [intros; ring | auto].
+    + apply (separates_cofactors A B e (unit d) (minus b b') (unit d) s 1 E); [intros; ring | apply S; auto].
   - exfalso. apply Deg. left.
     assert (forall d, In d (differences (corners A) (corners B)) -> forall q, dotq (cofactors d1 d) q == 0) as Q.
     { intros d J q. apply P in J. destruct J as (Ex & Ey & Ez). unfold dotq. rewrite Ex, Ey, Ez. ring. }
@@ -522,6 +582,16 @@ Proof.
     assert (dotq (cofactors (minus a' a) d1) (cofactors (cofactors (minus a'' a) p) d1)
       == - dotq (cofactors d1 (minus a' a)) (cofactors (cofactors (minus a'' a) p) d1)) as E by coordinates.
     rewrite E, Q' in G by auto. nra.
+Qed.
+
+Corollary axes_complete A B : ~ meet (corners A) (corners B) ->
+  some_axis A B (general_axes A B) \/
+  (degenerate A B /\ some_axis A B (degenerate_axes A B)) \/
+  (~ degenerate A B /\ coplanar A B /\
+   forall d, ~ dotq (normal A) (unit d) == 0 -> some_axis A B (in_plane_axes d A B)).
+Proof.
+  intros H. apply axes_one_sided in H. destruct H as [H | [H | (N & C & H)]]; auto.
+  right; right. split; auto. split; auto. intros d K. now apply H.
 Qed.
 
 (** The theorem: nA, nB and the nine products, or the programme of a special case, decide. *)
