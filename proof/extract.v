@@ -1,9 +1,19 @@
 (* SPDX-License-Identifier: Apache-2.0 *)
-(** Prints what the theorem rests on, and writes the checker as OCaml over the integers of [integer.ml]. *)
-From Certificates Require Import statement checker soundness.
+(** Prints what the theorems rest on, and writes the checker as OCaml over the integers of [integer.ml]. *)
+From Certificates Require Import statement checker soundness axes directed bounds.
 Require Import ZArith Extraction ExtrOcamlBasic.
 
 Print Assumptions accepted_holds.
+Print Assumptions axes_decide.
+Print Assumptions axes_one_sided.
+Print Assumptions seventeen_axes.
+Print Assumptions two_axes_decide.
+Print Assumptions directed_is_exhaustive.
+Print Assumptions error_of_sign.
+Print Assumptions sign_certain.
+Print Assumptions gap_certain.
+Print Assumptions eta_of_rounding.
+Print Assumptions widths_suffice.
 
 Extract Inductive positive => "Integer.t"
   [ "Integer.twice_plus_one" "Integer.twice" "Integer.one" ] "Integer.cases_of_positive".

@@ -150,6 +150,9 @@ PROBES = [
           "scripts/bitstream.py make raw --slot 0 --module 1 -o slot.bin"),
     Probe("proof", "proof/soundness.v", "Theorem accepted_holds s c",
           "Axiom probe : False.\nTheorem accepted_holds s c", "make -C proof OUT=$PWD/build/proof", "probe",
+          ("coqc", "ocamlfind"), ("proof", "rtl/include/cchip_defs.vh"), slow=True),
+    Probe("proof_widths", "rtl/include/cchip_defs.vh", "CCHIP_BOUND_W(w) (2 * (w) + 11)",
+          "CCHIP_BOUND_W(w) (2 * (w) + 10)", "make -C proof OUT=$PWD/build/proof", 'File "./bounds.v"',
           ("coqc", "ocamlfind"), ("proof",), slow=True),
 ]
 
