@@ -71,8 +71,8 @@ module cchip_chip_core #(
     input  wire                           rst,                 // synchronous reset, active high
     input  wire                           core_rst,            // resets all but the bus masters
     // ---- limits (cchip_traversal, cchip_axi_read)
-    // node pairs of a query that may be in flight, 0..7; 0 counts as 1; 2 pairs_each + 1, 7 at most,
-    // with 3 queries or fewer; half of it for a query for the first hit with leaf pairs out
+    // node pairs of a query that may be in flight, 0..7; 0 counts as 1; with 3 queries or fewer,
+    // 2 pairs_each + 1, 7 at most; half of it for a query for the first hit with leaf pairs out
     input  wire [                    2:0] pairs_each,
     // node pairs after which a query ends with code steps, 0..2^32 - 1
     input  wire [                   31:0] step_limit,
@@ -266,7 +266,7 @@ module cchip_chip_core #(
   // ---- queries
   wire query_valid, query_ready, queries_idle;
   wire [`CCHIP_QUERY_W-1:0] query;
-  cchip_query_ring #(.SLOTS(MISSES), .AHEAD(8), .DATA_W(DATA_W)) u_queries (
+  cchip_query_ring #(.SLOTS(MISSES), .AHEAD(MISSES < 8 ? 4 : 8), .DATA_W(DATA_W)) u_queries (
       .clk          (clk),
       .rst          (block_rst[QUERY_RING]),
       .enable       (enable),

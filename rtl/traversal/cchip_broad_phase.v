@@ -34,8 +34,8 @@ module cchip_broad_phase #(
     input  wire                            rst,                // synchronous reset, active high
     // ---- limits; they may change on any clock, and count for the queries in flight too.
     //      node pairs of a query in flight, 0..7; 0 counts as 1; half of it with leaf pairs out
-    // node pairs of a query that may be in flight, 0..7; 0 counts as 1; 2 pairs_each + 1, 7 at most,
-    // with 3 queries or fewer; half of it for a query for the first hit with leaf pairs out
+    // node pairs of a query that may be in flight, 0..7; 0 counts as 1; with 3 queries or fewer,
+    // 2 pairs_each + 1, 7 at most; half of it for a query for the first hit with leaf pairs out
     input  wire [                     2:0] pairs_each,
     // ---- node pairs of a query, 0..2^32 - 1; 0: it ends with code STEPS at its first one
     // node pairs after which a query ends with code steps, 0..2^32 - 1

@@ -330,6 +330,7 @@ LEGAL = [
     *((module, {"SLOTS": n}) for module in ("cchip_swap_scheduler", "cchip_bitstream_table") for n in (1, 4)),
     *(("cchip_primtest_subsystem", {"SLOTS": n}) for n in (1, 3, 4)),
     ("cchip_chip", {"SWAPS": 1, "SLOTS": 2, "RM_ID": 0}),
+    ("cchip_chip", {"MISSES": 4}),
     *(("cchip_slots", {"SLOTS": n, "SWAPS": s}) for n, s in ((1, 1), (2, 0), (4, 0))),
     *(("cchip_swaps", {"SLOTS": n, "SWAPS": s}) for n, s in ((1, 0), (4, 1))),
     *(("cchip_stream_merge", {"SOURCES": n}) for n in (1, 8)),

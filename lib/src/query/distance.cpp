@@ -7,10 +7,12 @@
 #include <cchip/internal/judge/near_parts.hpp>
 #include <cmath>
 #include <limits>
+#include <list>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "exact/nearest_planes.hpp"
@@ -42,6 +44,33 @@ void check(const DistanceRequest& request) {
     throw std::invalid_argument("stop_above is " + decimal_text(request.stop_above) + ": it must be at least 0");
   }
 }
+
+/// Planes through nearest points, and which faces lie behind them, as far as that was asked lately.
+class KnownPlanes {
+ public:
+  explicit KnownPlanes(exact::NearestPlanes planes) : planes_(std::move(planes)) {}
+  const DistanceBounds& bounds() const { return planes_.bounds(); }
+  /// Then they are no nearer than the planes' faces.
+  bool contain(const Mesh& mesh_a, std::uint32_t face_a, const Mesh& mesh_b, std::uint32_t face_b) {
+    return is_behind(a_, planes_.a(), mesh_a, face_a) && is_behind(b_, planes_.b(), mesh_b, face_b);
+  }
+
+ private:
+  struct Asked {
+    std::uint32_t face = 0xFFFFFFFF;
+    bool is_behind = false;
+  };
+  using Side = std::array<Asked, 256>;
+  static bool is_behind(Side& side, const exact::HalfSpace& space, const Mesh& mesh, std::uint32_t face) {
+    Asked& asked = side[face % side.size()];
+    if (asked.face != face) asked = {face, space.contains(mesh.primitive(face))};
+    return asked.is_behind;
+  }
+
+  exact::NearestPlanes planes_;
+  Side a_;
+  Side b_;
+};
 
 /// Branch and bound over pairs of nodes, the nearest ones first. Bounds of nodes and of faces are in single precision,
 /// squares in the unit of the frame; faces that may be the nearest ones are kept, doubles and then integers decide
@@ -322,19 +351,20 @@ class DistanceSearch {
     });
     make_planes();
     best_ = planes_->bounds();
-    std::vector<exact::NearestPlanes> known = {*planes_};
+    std::list<KnownPlanes> known;
+    known.emplace_back(*planes_);
     for (const Faces& faces : found_) {
       if (!(faces.lower < best_.lower)) continue;
-      const Primitive a = a_.mesh.primitive(faces.a);
-      const Primitive b = b_.mesh.primitive(faces.b);
-      const bool is_behind = std::any_of(known.begin(), known.end(), [&](const exact::NearestPlanes& planes) {
-        return planes.a().contains(a) && planes.b().contains(b);
+      const bool is_behind = std::any_of(known.begin(), known.end(), [&](KnownPlanes& planes) {
+        return planes.contain(a_.mesh, faces.a, b_.mesh, faces.b);
       });
       if (is_behind) continue;
+      const Primitive a = a_.mesh.primitive(faces.a);
+      const Primitive b = b_.mesh.primitive(faces.b);
       if (distances_.bounds(a, b).lower >= best_.lower) continue;
       constexpr std::size_t most_known = 4;
       if (known.size() == most_known) known.pop_back();
-      known.insert(known.begin(), exact::NearestPlanes(distances_, a, b));
+      known.emplace_front(exact::NearestPlanes(distances_, a, b));
       ++stats_.open;
       const DistanceBounds& bounds = known.front().bounds();
       if (!(bounds.lower < best_.lower || (bounds.lower == best_.lower && bounds.upper < best_.upper))) continue;
