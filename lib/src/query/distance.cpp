@@ -32,7 +32,7 @@ using FacePair = std::array<std::uint32_t, 2>;  ///< of A and of B, numbers in t
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// A search that takes more steps asks slabs, too: a short one is over before they pay.
-constexpr std::uint64_t slab_steps = 2048;
+constexpr std::uint64_t slab_steps = 256;
 constexpr double nearly = 1 - 0x1p-7;
 
 void check(const DistanceRequest& request) {
