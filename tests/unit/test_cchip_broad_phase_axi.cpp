@@ -169,7 +169,7 @@ TEMPLATE_LIST_TEST_CASE("cchip_broad_phase_axi: a corrupt line has the model's c
   Broad<TestType> bench(random());
   bench.memory().options.latency = 10;
   bench.top().pairs_each = 1;  // three of a lone query in flight: more may fill the smallest stack first
-  const Query query = [&] {  // one that visits much
+  const Query query = [&] {    // one that visits much
     for (;;) {
       const Query q = bench.objects.query(random, QueryMode::all);
       if (expected(bench.objects, q).counts.leaf_pairs > 20) return q;
