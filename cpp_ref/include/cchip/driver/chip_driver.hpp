@@ -24,7 +24,7 @@ struct ChipDriverOptions {
   std::uint32_t step_limit = 0xFFFFFFFF;  ///< node pairs of a query
   std::uint32_t memory_limit = 0;         ///< longest wait of the chip for memory, clocks; 0: its default
   std::uint8_t open_limit = 16;           ///< open pairs that end a query for the first hit
-  std::uint8_t pairs_each = 3;            ///< node pairs of a query in flight, 1..4; of 3 queries or fewer twice as many and one
+  std::uint8_t pairs_each = 3;            ///< node pairs of a query in flight, 1..4
   /// The bitstream that makes `module_id` of slot `slot`, for a chip with swaps; without it, virtual ones for the
   /// simulated chip, each with this many bytes of payload. They lie before the images, below 2^32.
   std::function<Bytes(std::uint8_t slot, ModuleId module_id)> bitstream;
