@@ -135,7 +135,7 @@ CHIP_PARAMETERS = {
     "cchip_traversal": (("CREDIT", 16),),
     "cchip_get_data": (),
     "cchip_transform": (("CREDIT", 64), ("ID_W", 7)),
-    "cchip_leaf_feed": (), "cchip_query_ring": (), "cchip_calc_result": (), "cchip_record_ring": (),
+    "cchip_leaf_feed": (), "cchip_query_ring": (("AHEAD", 8),), "cchip_calc_result": (), "cchip_record_ring": (),
     "cchip_descriptor_queues": (("DEPTH", 64),),
     "cchip_dispatcher": (("SLOTS", 1),),
     "cchip_chip_regs": (),

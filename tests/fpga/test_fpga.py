@@ -297,6 +297,7 @@ class Placement(unittest.TestCase):
                 continue
             own = dict(datasheet.parse(name)[0]) | dict(parameters)
             for parameter, value in re.findall(r"\.(\w+) *\(([^()]*)\)", instance[1]):
+                value = re.sub(r"(.+) \? (.+) : (.+)", r"\2 if \1 else \3", value)
                 value = eval(value, {}, {key: int(n)
                                          for key, n in chip.items() if str(n).isdigit()}) if "`" not in value else None
                 if value is not None:
