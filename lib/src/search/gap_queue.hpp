@@ -9,6 +9,7 @@
 #include <cchip/internal/tree/support_tree.hpp>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 namespace cchip {
