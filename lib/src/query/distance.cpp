@@ -272,11 +272,11 @@ class DistanceSearch {
       const std::uint32_t face_a = a_.tree.faces()[leaf_a.first() + i / leaf_b.count()];
       const std::uint32_t face_b = b_.tree.faces()[leaf_b.first() + i % leaf_b.count()];
       const bool is_nearer = faces_.upper[number(i, leaf_b)] * unit_ < upper_ || !nearest_;
-      // Between parallel faces only the planes see which are nearer.
       if (is_nearer) {
         refine({lower * unit_, face_a, face_b, 0});
         continue;
       }
+      // Between parallel faces only the planes see which are nearer.
       if (planes_help() && is_behind(face_a, face_b)) continue;
       // In doubles, along the line that single precision has found.
       const std::size_t at = number(i, leaf_b);

@@ -27,8 +27,6 @@ class FrameGap {
   /// The axes are those of the world until set_axis() chooses others.
   FrameGap(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b);
 
-  /// False: the numbers are so great or so small that nothing is known, and gaps are 0.
-  bool is_moderate() const { return is_moderate_; }
   /// One axis is along `axis`, of any length; a zero vector is refused, and the axes stay.
   void set_axis(const Vec3d& axis);
 
@@ -86,7 +84,7 @@ class FrameGap {
   Vec3d between_;         ///< translation of B relative to A
   Vec3d centre_between_;  ///< centre of B relative to that of A
   double size_;
-  bool is_moderate_;
+  bool is_moderate_;  ///< false: the numbers are so great or so small that nothing is known, and gaps are 0
   std::array<double, axes> offset_ = {};
   std::array<double, axes> slack_ = {};
   double scale_ = 0;  ///< from the root of the sum of squares to the bound
