@@ -13,6 +13,7 @@
 #include <cchip/internal/exact/oracle.hpp>
 #include <cchip/program/seed.hpp>
 #include <cchip/scene.hpp>
+#include <cchip/shapes.hpp>
 #include <fstream>
 #include <iostream>
 #include <set>
@@ -73,7 +74,7 @@ class Judge {
   }
 
   bool holds(const Certificate& c) {
-    if (c.version != (c.within > 0 || c.along ? 2 : 1) || c.hash_a != hash_mesh(side_[0].mesh) ||
+    if ((c.version != 3 && c.version != (c.within > 0 || c.along ? 2 : 1)) || c.hash_a != hash_mesh(side_[0].mesh) ||
         c.hash_b != hash_mesh(side_[1].mesh) || c.hash_poses != hash_poses(side_[0].pose, side_[1].pose)) {
       return false;
     }
@@ -207,6 +208,15 @@ class Judge {
 
   bool proof_holds(const Certificate& c) {
     next_ = 0;
+    if (c.version == 3) {
+      const CertificateTree a = make_certificate_tree(side_[0].mesh), b = make_certificate_tree(side_[1].mesh);
+      if (!c.all || c.tree_a != a.tree_hash() || c.tree_b != b.tree_hash()) return false;
+      if (!c.order_a.empty() || !c.order_b.empty()) return false;
+      Certificate with_orders = c;  // whose cells say more than these ask for: boxes are larger than what they hold
+      with_orders.order_a = a.order();
+      with_orders.order_b = b.order();
+      return cells_hold(with_orders, 0, a.order().size(), 0, b.order().size()) && next_ == c.cells.size();
+    }
     if (!c.all) {
       return c.cells.size() == 1 && c.cells[0].kind >= CellKind::meet && point_holds(c.cells[0], c);
     }
@@ -223,11 +233,16 @@ class Judge {
   bool cells_hold(const Certificate& c, std::size_t a0, std::size_t a1, std::size_t b0, std::size_t b1) {
     if (next_ >= c.cells.size()) return false;
     const CertificateCell& cell = c.cells[next_++];
+    const auto place = [&](std::size_t begin, std::size_t end) { return c.version == 3 ? (begin + end) / 2 : cell.at; };
     switch (cell.kind) {
-      case CellKind::split_a:
-        return a0 < cell.at && cell.at < a1 && cells_hold(c, a0, cell.at, b0, b1) && cells_hold(c, cell.at, a1, b0, b1);
-      case CellKind::split_b:
-        return b0 < cell.at && cell.at < b1 && cells_hold(c, a0, a1, b0, cell.at) && cells_hold(c, a0, a1, cell.at, b1);
+      case CellKind::split_a: {
+        const std::size_t at = place(a0, a1);
+        return a0 < at && at < a1 && cells_hold(c, a0, at, b0, b1) && cells_hold(c, at, a1, b0, b1);
+      }
+      case CellKind::split_b: {
+        const std::size_t at = place(b0, b1);
+        return b0 < at && at < b1 && cells_hold(c, a0, a1, b0, at) && cells_hold(c, a0, a1, at, b1);
+      }
       case CellKind::separated:
         for (std::size_t i = a0; i < a1; ++i) {
           for (std::size_t k = b0; k < b1; ++k) {
@@ -374,24 +389,30 @@ Vec3d random_translation(std::mt19937_64& random) {
   return result;
 }
 
-/// Of any claim.
+/// Of any claim, with trees or without.
 Certificate random_certificate(const std::array<Placed, 2>& pair, std::mt19937_64& random) {
   const Object a(pair[0].mesh), b(pair[1].mesh);
   const CollisionQuery query = {&a, &pair[0].pose, &b, &pair[1].pose};
-  if (random() % 2 == 0) return certify(query, requests[random() % requests.size()]);
+  const CertificateTree tree_a = make_certificate_tree(a.mesh()), tree_b = make_certificate_tree(b.mesh());
+  const CitedTrees trees = random() % 2 == 0 ? CitedTrees{&tree_a, &tree_b} : CitedTrees{};
+  if (random() % 2 == 0) return certify(query, requests[random() % requests.size()], trees);
   if (random() % 3 == 0) {
-    const std::optional<Certificate> clear = certify_clear_along(query, random_translation(random));
+    const std::optional<Certificate> clear = certify_clear_along(query, random_translation(random), trees);
     if (clear) return *clear;
   }
   const Contacts contacts = random() % 2 == 0 ? Contacts::first : Contacts::all;
   const double distance = random_distance(a, pair[0].pose, b, pair[1].pose, random);
-  if (random() % 2 == 0) return certify_below(query, distance, contacts);
+  if (random() % 2 == 0) return certify_below(query, distance, contacts, trees);
   CollisionRequest within = request(contacts, false);
   within.within = distance;
-  return certify(query, within);
+  return certify(query, within, trees);
 }
 
 CertificateVerdict check(const std::array<Placed, 2>& pair, const Certificate& certificate) {
+  if (certificate.version == 3) {
+    return check_certificate(make_certificate_tree(pair[0].mesh), pair[0].pose, make_certificate_tree(pair[1].mesh),
+                             pair[1].pose, certificate);
+  }
   return check_certificate(pair[0].mesh, pair[0].pose, pair[1].mesh, pair[1].pose, certificate);
 }
 
@@ -463,12 +484,13 @@ void mutate(Certificate& c, std::mt19937_64& random) {
       c.within = random() % 3 == 0 ? 0 : std::nextafter(c.within, random() % 2 == 0 ? 0 : 10);
       break;
     case 18: {
-      std::uint64_t& hash = *std::array<std::uint64_t*, 3>{&c.hash_a, &c.hash_b, &c.hash_poses}[random() % 3];
+      std::uint64_t& hash = *std::array<std::uint64_t*, 5>{&c.hash_a, &c.hash_b, &c.hash_poses, &c.tree_a,
+                                                           &c.tree_b}[random() % (c.version == 3 ? 5 : 3)];
       hash ^= std::uint64_t{1} << random() % 64;
       break;
     }
     case 19:
-      c.version = static_cast<int>(random() % 3);
+      c.version = static_cast<int>(random() % 4);
       break;
     case 20:
       if (!c.contacts.empty()) {
@@ -573,6 +595,11 @@ TEST_CASE("certificate: answers of the CPU device are certified and accepted", "
         }
       }
       CHECK(check(pair, certify(query, r)).accepted);
+      const CertificateTree tree_a = make_certificate_tree(a.mesh()), tree_b = make_certificate_tree(b.mesh());
+      const Certificate cited = certify(query, r, answer, {&tree_a, &tree_b});
+      CHECK(cited.version == (cited.all ? 3 : 1));
+      CHECK(check(pair, cited).reason.empty());
+      CHECK(cited.contacts.size() == certificate.contacts.size());
       for (const CertificateCell& cell : certificate.cells) ++kinds[cell.kind];
     }
   }
@@ -864,6 +891,135 @@ TEST_CASE("certificate: coordinates at the ends of the doubles", "[lib][certific
   }
 }
 
+TEST_CASE("certificate: trees of meshes with boxes, in poses of all kinds", "[lib][certificate]") {
+  std::mt19937_64 random = generator(11);
+  const Object a(make_sphere(0.4, 5, 0.1)), b(make_sphere(0.3, 4, 0.1));
+  const CertificateTree tree_a = make_certificate_tree(a.mesh()), tree_b = make_certificate_tree(b.mesh());
+  const CitedTrees trees = {&tree_a, &tree_b};
+  std::map<std::string, int> told;
+  std::size_t cells = 0, of_orders = 0;
+  for (int n = 0; n < 120; ++n) {
+    std::array<Placed, 2> pair = {{{a.mesh()}, {b.mesh()}}};
+    const PoseClass c = pose_classes[std::size_t(n) % std::size(pose_classes)];
+    for (Placed& p : pair) p.pose = random_pose(c, 0.5, random);
+    if (n % 3 == 0) pair[1].pose.linear() *= n % 2 == 0 ? 0x1p450 : 0x1p-450;
+    const CollisionQuery query = {&a, &pair[0].pose, &b, &pair[1].pose};
+    const auto holds = [&](const Certificate& certificate) {
+      const CertificateVerdict verdict =
+          check_certificate(tree_a, pair[0].pose, tree_b, pair[1].pose, certificate);
+      INFO(n << ": " << verdict.reason << " in cell " << verdict.cell);
+      CHECK(verdict.accepted);
+      return verdict.accepted;
+    };
+    const Certificate certificate = certify(query, request(Contacts::all, true), trees);
+    const Certificate with_orders = certify(query, request(Contacts::all, true));
+    REQUIRE(holds(certificate));
+    CHECK(certificate.relation == with_orders.relation);
+    REQUIRE(certificate.contacts.size() == with_orders.contacts.size());
+    for (std::size_t i = 0; i < certificate.contacts.size(); ++i) {
+      CHECK(certificate.contacts[i].face_a == with_orders.contacts[i].face_a);
+      CHECK(certificate.contacts[i].face_b == with_orders.contacts[i].face_b);
+    }
+    ++told[certificate.contacts.empty() ? "apart" : "contacts"];
+    cells += certificate.cells.size();
+    of_orders += with_orders.cells.size();
+    if (certificate.contacts.empty()) {
+      const double far = distance(a, pair[0].pose, b, pair[1].pose).lower;
+      if (far > 0) {
+        const Certificate below = certify_below(query, far, Contacts::first, trees);
+        CHECK(below.contacts.empty());
+        CHECK(holds(below));
+        ++told["below"];
+      }
+    }
+    const Vec3d along = random_translation(random);
+    const std::optional<Certificate> clear = certify_clear_along(query, along, trees);
+    CHECK(clear.has_value() == certify_clear_along(query, along).has_value());
+    if (clear) {
+      holds(*clear);
+      ++told["clear"];
+    }
+  }
+  for (const auto& [kind, count] : told) std::cout << kind << ' ' << count << '\n';
+  std::cout << "cells=" << cells << " cells_with_orders=" << of_orders << '\n';
+  CHECK(told.size() == 4);
+}
+
+TEST_CASE("certificate: what a tree is, and what it is not", "[lib][certificate]") {
+  // Six faces of a strip along a diagonal: their box is a cube, which the direction does not part from the other one.
+  Mesh strip;
+  for (int i = 0; i < 6; ++i) {
+    const double x = i;
+    testing::add_face(strip, {{x, x, x}, {x + 1, x + 1, x + 1}, {x, x + 0.5, x}});
+  }
+  std::array<Placed, 2> pair = {{{strip}, {strip}}};
+  pair[1].pose.translation() = Vec3d(4, 0, 0);
+  const Object a(strip), b(strip);
+  const CertificateTree tree = make_certificate_tree(a.mesh()), same = make_certificate_tree(b.mesh());
+  const CollisionQuery query = {&a, &pair[0].pose, &b, &pair[1].pose};
+  Certificate c = certify(query, {}, {&tree, &same});
+  REQUIRE(check(pair, c).accepted);
+  CHECK(c.cells.size() > 1);
+  const auto reason = [&](const Certificate& certificate) {
+    return check_certificate(tree, pair[0].pose, same, pair[1].pose, certificate).reason;
+  };
+  Certificate changed = c;
+  changed.cells.resize(1);
+  changed.cells[0] = {};
+  changed.cells[0].direction = {"1", "-1", "0"};
+  CHECK(reason(changed) == "A is not strictly below B");
+  changed.version = 1;  // which it does part the faces along
+  changed.order_a = tree.order();
+  changed.order_b = same.order();
+  CHECK(reason(changed).empty());
+  changed = c;
+  changed.cells.assign(40, {});
+  for (CertificateCell& cell : changed.cells) cell.kind = CellKind::split_a;
+  CHECK(reason(changed) == "a split leaves one half empty");
+  changed = c;
+  changed.order_a = tree.order();
+  CHECK(reason(changed) == "an order beside a tree");
+  changed = c;
+  changed.tree_b ^= 1U;
+  CHECK(reason(changed) == "it cites other trees");
+  changed = c;
+  changed.all = false;
+  CHECK(reason(changed) == "unknown version");
+  CHECK(check_certificate(pair[0].mesh, pair[0].pose, pair[1].mesh, pair[1].pose, c).reason ==
+        "it cites trees, and none are given");
+  std::vector<std::uint32_t> order = tree.order();
+  std::swap(order[0], order[5]);
+  CHECK(check_certificate(CertificateTree(a.mesh(), order), pair[0].pose, same, pair[1].pose, c).reason ==
+        "it cites other trees");
+  order[0] = order[1];
+  CHECK_THROWS_WITH(CertificateTree(a.mesh(), order), "an order does not hold each face once");
+  order.pop_back();
+  CHECK_THROWS_WITH(CertificateTree(a.mesh(), order), "an order does not hold each face once");
+  CHECK_THROWS_WITH(make_certificate_tree(Mesh()), "an order does not hold each face once");
+  CHECK_THROWS_WITH(certify(query, {}, {&tree, nullptr}), Catch::StartsWith("certify: one tree is missing: "));
+  CHECK_THROWS_WITH(certify(query, {}, {&same, &tree}), Catch::StartsWith("certify: a tree is of another mesh: "));
+
+  // Its file.
+  std::ostringstream out;
+  write_certificate_tree(tree, out);
+  const std::string text = out.str();
+  const auto read_tree = [&](const std::string& changed_text, const Mesh& mesh) {
+    std::istringstream in(changed_text);
+    return read_certificate_tree(mesh, in);
+  };
+  CHECK(read_tree(text, a.mesh()).tree_hash() == tree.tree_hash());
+  CHECK(read_tree(text.substr(0, text.size() - 1), a.mesh()).tree_hash() == tree.tree_hash());
+  CHECK_THROWS_WITH(read_tree(text + text, a.mesh()), "tree: more than one line");
+  CHECK_THROWS_WITH(read_tree("", a.mesh()), "tree: the file is empty or cannot be read");
+  CHECK_THROWS_WITH(read_tree("{\"collisionchip_tree\":2}", a.mesh()),
+                    "tree: no tree, or another version of it");
+  CHECK_THROWS_WITH(read_tree("{\"collisionchip_tree\":1,\"order\":[[0,5]],\"mesh\":\"0000000000000000\"}", a.mesh()),
+                    "tree: it is of another mesh");
+  CHECK_THROWS_WITH(read_tree("{\"collisionchip_tree\":1,\"order\":[[0,4]],\"mesh\":\"0000000000000000\"}", a.mesh()),
+                    "tree: an order does not hold each face once");
+  CHECK_THROWS_WITH(read_tree("[", a.mesh()), Catch::StartsWith("tree: "));
+}
+
 namespace {
 
 std::string written(const Certificate& certificate) {
@@ -1053,6 +1209,16 @@ void print_case(const std::array<Placed, 2>& pair, bool accepted, const std::str
         comma = ",";
       }
     }
+  }
+  std::cout << "],\"trees\":[";
+  for (const std::size_t s : {0U, 1U}) {
+    comma = s == 0 ? "[" : ",[";
+    const CertificateTree tree = make_certificate_tree(pair[s].mesh);
+    for (const std::uint32_t face : tree.order()) {
+      std::cout << comma << face;
+      comma = ",";
+    }
+    std::cout << ']';
   }
   std::cout << "],\"accepted\":" << (accepted ? "true" : "false") << ',' << fields << "}\n";
 }

@@ -32,7 +32,8 @@ struct CertificateCell {
     split_a,  ///< the set of A in two: faces before `at` and from `at` on; the cells of the first follow, then the rest
     split_b,  ///< the same for the set of B
     separated,  ///< along `direction`, every vertex of the set of A lies strictly below every vertex of the set of B;
-                ///< `within` asks for more, `along` for something else
+                ///< `within` asks for more, `along` for something else. In version 3 the corners of their boxes do, if a
+                ///< set has more than CertificateTree::most_faces_without_box faces
     meet,       ///< one face each: they share a point, which both weights name
     touch,      ///< one face each: the same, and along `direction` no vertex of A lies above a vertex of B
     cross,      ///< one face each: the same with positive weights, and the edges of `span` span space
@@ -63,7 +64,7 @@ struct Certificate {
     std::uint32_t face_b = 0;
     std::optional<Relation> relation = std::nullopt;  ///< touching or crossing, if the claim tells
   };
-  /// 2 of claims with `within` or `along`, 1 of others.
+  /// 3 if it cites trees; otherwise 2 of claims with `within` or `along`, 1 of others.
   int version = 1;
   std::uint64_t hash_a = 0;  ///< hash_mesh() of A
   std::uint64_t hash_b = 0;
@@ -86,6 +87,9 @@ struct Certificate {
 
   /// The proof. With `all`: the faces of A and of B in any order, each once; sets of faces are intervals of these. The
   /// first cell is of all pairs, and those of a split follow it. Without: no orders and one cell.
+  /// Version 3 has no orders: sets are those of the trees with these hashes, and a split has no `at`.
+  std::uint64_t tree_a = 0;  ///< CertificateTree::tree_hash()
+  std::uint64_t tree_b = 0;
   std::vector<std::uint32_t> order_a;
   std::vector<std::uint32_t> order_b;
   std::vector<CertificateCell> cells;

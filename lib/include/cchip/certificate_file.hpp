@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Certificates as lines of JSON (docs/cpp/certificates.md).
+/// Certificates and their trees as lines of JSON (docs/cpp/certificates.md).
 #ifndef CCHIP_CERTIFICATE_FILE_HPP
 #define CCHIP_CERTIFICATE_FILE_HPP
 
-#include <cchip/certificate.hpp>
+#include <cchip/certificate_tree.hpp>
 #include <cstddef>
 #include <iosfwd>
 #include <optional>
@@ -34,6 +34,14 @@ class CertificateReader {
 /// \throws std::runtime_error no such lines, or another version; one line with the number of the line. Also if the
 ///         library was built without nlohmann-json
 Certificate read_certificate(std::istream& in);
+
+/// One line: the order of the faces and the hash of the mesh.
+void write_certificate_tree(const CertificateTree& tree, std::ostream& out);
+
+/// Reads and checks it. Keeps a reference to the mesh.
+/// \throws std::runtime_error no such line, of another mesh, or an order that does not hold each face once. Also if the
+///         library was built without nlohmann-json
+CertificateTree read_certificate_tree(const Mesh& mesh, std::istream& in);
 
 }  // namespace cchip
 

@@ -23,55 +23,68 @@ struct CertificateVerdict {
 
 namespace certificate_check {
 
+/// A set of faces: an interval of an order, and for some the box that stands for them.
+struct Faces {
+  const std::uint32_t* begin;
+  const std::uint32_t* end;
+  const CertificateTree::Box* box = nullptr;
+};
+
 struct Checker {
   std::array<const Mesh*, 2> mesh;
-  std::array<std::vector<Point>, 2> points;
-  Int within = 0;  ///< in their unit
+  Placement placement;
   bool below = false;
   std::optional<Point> along = std::nullopt;  ///< times any power of two
 
-  const Point& corner(std::size_t side, std::uint32_t face, std::size_t k) const {
-    return points[side][mesh[side]->faces[face].vertex[k]];
+  Point corner(std::size_t side, std::uint32_t face, std::size_t k) const {
+    return placement.posed(side, mesh[side]->vertices[mesh[side]->faces[face].vertex[k]]);
   }
   std::size_t corners(std::size_t side, std::uint32_t face) const {
     return static_cast<std::size_t>(mesh[side]->faces[face].kind);
   }
 
-  /// The greatest value of A's faces minus the least of B's along the direction: of its sign alone there is use.
-  Int overlap(const std::vector<Digits>& direction, const std::array<std::vector<std::uint32_t>, 2>& faces) const {
-    const std::vector<Int> d = integers(direction, 3);
-    require(d[0] != 0 || d[1] != 0 || d[2] != 0, "the direction is 0");
-    std::array<std::optional<Int>, 2> end;  // the greatest of A, the least of B
-    for (const std::size_t side : {0U, 1U}) {
-      const auto take = [&, side](std::uint32_t vertex) {
-        Int value = dot(d, points[side][vertex]);
-        if (!end[side] || (side == 0 ? value > *end[side] : value < *end[side])) end[side] = std::move(value);
-      };
-      for_each_vertex(side, faces[side], take);
-    }
-    return *end[0] - *end[1];
+  /// The greatest value of A minus the least of B along the direction: of its sign alone there is use.
+  Int overlap(const Point& direction, const std::array<Faces, 2>& faces) const {
+    return greatest(0, direction, faces[0]) +
+           greatest(1, {-direction[0], -direction[1], -direction[2]}, faces[1]);
   }
 
   /// Does the direction keep the faces of A below those of B, as the claim wants it?
-  bool separates(const std::vector<Digits>& direction, const std::array<std::vector<std::uint32_t>, 2>& faces) const {
-    const Int gap = -overlap(direction, faces);
-    const std::vector<Int> d = integers(direction, 3);
+  bool separates(const Point& d, const std::array<Faces, 2>& faces) const {
+    const Int gap = -overlap(d, faces);
     if (along) {
       const Int rise = dot(d, *along);
       return gap > 0 ? rise >= 0 : gap == 0 && rise > 0;
     }
+    const Int& within = placement.length();
     if (gap <= 0 || within == 0) return gap > 0;
-    const Int least = within * within * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    const Int least = within * within * dot(d, d);
     return below ? gap * gap >= least : gap * gap > least;
+  }
+
+  Int greatest(std::size_t side, const Point& direction, const Faces& faces) const {
+    const Placement::Functional value = placement.functional(side, direction);
+    if (faces.box != nullptr) {  // at the corner that the signs of the factors choose
+      const Point low = placement.of_mesh(side, faces.box->low), high = placement.of_mesh(side, faces.box->high);
+      Point at;
+      for (std::size_t i = 0; i < 3; ++i) at[i] = value.factors[i] > 0 ? high[i] : low[i];
+      return value(at);
+    }
+    std::optional<Int> greatest;
+    for_each_vertex(side, faces, [&](std::uint32_t vertex) {
+      Int here = value(placement.of_mesh(side, mesh[side]->vertices[vertex]));
+      if (!greatest || here > *greatest) greatest = std::move(here);
+    });
+    return *std::move(greatest);
   }
 
   /// Calls `take` for the vertices of the faces: for each once, if there are many faces.
   template <class Take>
-  void for_each_vertex(std::size_t side, const std::vector<std::uint32_t>& faces, const Take& take) const {
-    std::vector<bool> taken(faces.size() < 64 ? 0 : points[side].size());
-    for (const std::uint32_t face : faces) {
-      for (std::size_t k = 0; k < corners(side, face); ++k) {
-        const std::uint32_t vertex = mesh[side]->faces[face].vertex[k];
+  void for_each_vertex(std::size_t side, const Faces& faces, const Take& take) const {
+    std::vector<bool> taken(faces.end - faces.begin < 64 ? 0 : mesh[side]->vertices.size());
+    for (const std::uint32_t* face = faces.begin; face != faces.end; ++face) {
+      for (std::size_t k = 0; k < corners(side, *face); ++k) {
+        const std::uint32_t vertex = mesh[side]->faces[*face].vertex[k];
         if (!taken.empty() && taken[vertex]) continue;
         if (!taken.empty()) taken[vertex] = true;
         take(vertex);
@@ -90,7 +103,8 @@ struct Checker {
       for (std::size_t k = 0; k < weights.size(); ++k) {
         require(weights[k] >= (cell.kind == CellKind::cross ? 1 : 0), "a weight is too small");
         total[side] += weights[k];
-        for (std::size_t axis = 0; axis < 3; ++axis) sum[side][axis] += weights[k] * corner(side, face[side], k)[axis];
+        const Point p = corner(side, face[side], k);
+        for (std::size_t axis = 0; axis < 3; ++axis) sum[side][axis] += weights[k] * p[axis];
       }
       require(total[side] > 0, "all weights are 0");
     }
@@ -100,19 +114,20 @@ struct Checker {
       square += difference * difference;
     }
     if (cell.kind == CellKind::near) {
-      const Int most = within * total[0] * total[1];
+      const Int most = placement.length() * total[0] * total[1];
       require(below ? square < most * most : square <= most * most, "the points are too far apart");
       return;
     }
     require(square == 0, "the points differ");
     if (cell.kind == CellKind::touch)
-      require(overlap(cell.direction, {{{face[0]}, {face[1]}}}) <= 0, "A is not below B");
+      require(overlap(direction_of(cell.direction), {{{&face[0], &face[0] + 1}, {&face[1], &face[1] + 1}}}) <= 0,
+              "A is not below B");
     if (cell.kind != CellKind::cross) return;
     std::vector<Point> e;
     for (const CertificateCell::Edge edge : cell.span) {
       const std::size_t side = edge.of_b;
       require(edge.vertex < corners(side, face[side]), "an edge ends at no vertex");
-      const Point &p = corner(side, face[side], 0), &q = corner(side, face[side], edge.vertex);
+      const Point p = corner(side, face[side], 0), q = corner(side, face[side], edge.vertex);
       e.push_back({q[0] - p[0], q[1] - p[1], q[2] - p[2]});
     }
     Int determinant = 0;
@@ -122,45 +137,45 @@ struct Checker {
   }
 };
 
-}  // namespace certificate_check
+/// What a certificate is checked against. The trees are those that a certificate may cite, or null.
+struct Sides {
+  std::array<const CheckedMesh*, 2> mesh;
+  std::array<const CertificateTree*, 2> tree;
+};
 
-/// Does the claim of the certificate follow from its cells, and do these hold for the meshes in their poses? Never
-/// throws but for want of memory. Time is at most proportional to the pairs of faces and the size of the certificate.
-inline CertificateVerdict check_certificate(const Mesh& a, const Pose& pose_a, const Mesh& b, const Pose& pose_b,
-                                            const Certificate& certificate) {
-  using namespace certificate_check;
+inline CertificateVerdict check(const Sides& sides, const Pose& pose_a, const Pose& pose_b, const Certificate& c) {
   using CellKind = CertificateCell::Kind;
-  const Certificate& c = certificate;
   const char* const other_contacts = "other contacts than claimed";
+  const Mesh &a = sides.mesh[0]->mesh(), &b = sides.mesh[1]->mesh();
+  const bool cites = c.version == 3;  // its sets are those of trees
+  const bool is_measured = c.within > 0 || c.along;
   std::size_t number = 0;
   try {
-    require(c.version == (c.within > 0 || c.along ? 2 : 1), "unknown version");
-    for (const Mesh* m : {&a, &b})
-      require(m->file_face.empty() || m->file_face.size() == m->faces.size(), "a broken mesh");
+    require(cites ? c.all : c.version == (is_measured ? 2 : 1), "unknown version");
     require(c.within >= 0 && std::isfinite(c.within) && (c.within > 0 || !c.below), "no distance");
-    Placed placed = place({&a, &b}, {&pose_a, &pose_b}, c.within);
-    Checker checker = {{&a, &b}, std::move(placed.points), std::move(placed.length), c.below};
+    Checker checker = {{&a, &b}, Placement(sides.mesh, {&pose_a, &pose_b}, c.within), c.below};
     if (c.along) {
       require(c.all && c.contacts.empty() && !c.relation && c.within == 0, "no claim of a translation");
       checker.along = whole_point(*c.along);
       require(*checker.along != Point{0, 0, 0}, "the translation is 0");
     }
-    require(c.hash_a == hash_mesh(a) && c.hash_b == hash_mesh(b), "the certificate is of other meshes");
+    require(c.hash_a == sides.mesh[0]->hash() && c.hash_b == sides.mesh[1]->hash(),
+            "the certificate is of other meshes");
     require(c.hash_poses == hash_poses(pose_a, pose_b), "the certificate is of other poses");
+    std::array<const std::vector<std::uint32_t>*, 2> order = {&c.order_a, &c.order_b};
+    if (cites) {
+      require(sides.tree[0] != nullptr && sides.tree[1] != nullptr, "it cites trees, and none are given");
+      require(c.tree_a == sides.tree[0]->tree_hash() && c.tree_b == sides.tree[1]->tree_hash(), "it cites other trees");
+      require(c.order_a.empty() && c.order_b.empty(), "an order beside a tree");
+      order = {&sides.tree[0]->order(), &sides.tree[1]->order()};
+    }
     // Of two faces of the files: kinds of the cells that name a point of their parts.
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::set<CellKind>> found;
-    using Sets = std::array<std::array<std::size_t, 2>, 2>;  // of A and of B: begin and end in the order
-    std::vector<Sets> open;                                  // cells that are to come
+    using Sets = std::array<CertificateTree::Set, 2>;  // of A and of B
+    std::vector<Sets> open;                            // cells that are to come
     if (c.all) {
       for (const std::size_t side : {0U, 1U}) {
-        const std::vector<std::uint32_t>& order = side == 0 ? c.order_a : c.order_b;
-        std::vector<bool> seen(checker.mesh[side]->faces.size());
-        bool once = !seen.empty() && order.size() == seen.size();
-        for (std::size_t i = 0; once && i < order.size(); ++i) {
-          once = order[i] < seen.size() && !seen[order[i]];
-          if (once) seen[order[i]] = true;
-        }
-        require(once, "an order does not hold each face once");
+        if (!cites) check_order(*order[side], checker.mesh[side]->faces.size());
       }
       open.push_back({{{0, a.faces.size()}, {0, b.faces.size()}}});
     }
@@ -172,21 +187,26 @@ inline CertificateVerdict check_certificate(const Mesh& a, const Pose& pose_a, c
       if (cell.kind == CellKind::split_a || cell.kind == CellKind::split_b) {
         Sets first = sets, second = sets;
         const std::size_t side = cell.kind == CellKind::split_b;
-        require(sets[side][0] < cell.at && cell.at < sets[side][1], "a split leaves one half empty");
-        first[side][1] = second[side][0] = cell.at;
+        const std::size_t at = cites ? sets[side].middle() : cell.at;
+        require(sets[side].begin < at && at < sets[side].end, "a split leaves one half empty");
+        first[side].end = second[side].begin = at;
         open.insert(open.end(), {second, first});
       } else if (cell.kind == CellKind::separated) {
         require(c.all, "a claim of one contact needs a point");
-        const auto in_a = c.order_a.begin(), in_b = c.order_b.begin();
-        const auto at = [](std::size_t i) { return static_cast<std::ptrdiff_t>(i); };
-        require(checker.separates(cell.direction, {{{in_a + at(sets[0][0]), in_a + at(sets[0][1])},
-                                                    {in_b + at(sets[1][0]), in_b + at(sets[1][1])}}}),
+        const auto faces = [&](std::size_t side) {
+          const std::uint32_t* const first = order[side]->data();
+          const bool has_box = cites && sets[side].size() > CertificateTree::most_faces_without_box;
+          return Faces{first + sets[side].begin, first + sets[side].end,
+                       has_box ? &sides.tree[side]->box(sets[side]) : nullptr};
+        };
+        require(checker.separates(direction_of(cell.direction), {{faces(0), faces(1)}}),
                 c.within > 0 ? "A is not far enough below B" : "A is not strictly below B");
       } else {
         require(cell.kind <= CellKind::near && (cell.kind == CellKind::near) == (c.within > 0) && !c.along,
                 "unknown kind of cell");
-        const bool single = sets[0][1] - sets[0][0] == 1 && sets[1][1] - sets[1][0] == 1;
-        require(!c.all || (single && cell.face_a == c.order_a[sets[0][0]] && cell.face_b == c.order_b[sets[1][0]]),
+        const bool single = sets[0].size() == 1 && sets[1].size() == 1;
+        require(!c.all || (single && cell.face_a == (*order[0])[sets[0].begin] &&
+                           cell.face_b == (*order[1])[sets[1].begin]),
                 "the point of other faces");
         checker.check_point(cell);
         found[{a.number_in_file(cell.face_a), b.number_in_file(cell.face_b)}].insert(cell.kind);
@@ -195,8 +215,8 @@ inline CertificateVerdict check_certificate(const Mesh& a, const Pose& pose_a, c
     }
     require(open.empty(), "cells are missing");
     Relation strongest = Relation::apart;
-    bool all_told = c.all && c.version == 1;
-    require(c.least == Relation::touching || (c.least == Relation::crossing && c.version == 1),
+    bool all_told = c.all && !is_measured;
+    require(c.least == Relation::touching || (c.least == Relation::crossing && !is_measured),
             "unknown kind of contacts");
     auto claimed = c.contacts.begin();
     for (const auto& [faces, kinds] : found) {
@@ -218,6 +238,27 @@ inline CertificateVerdict check_certificate(const Mesh& a, const Pose& pose_a, c
     return {false, error.what(), number};
   }
   return {true, "", number};
+}
+
+}  // namespace certificate_check
+
+/// Does the claim of the certificate follow from its cells, and do these hold for the meshes in their poses? Never
+/// throws but for want of memory. Time is at most proportional to the pairs of faces and the size of the certificate.
+inline CertificateVerdict check_certificate(const Mesh& a, const Pose& pose_a, const Mesh& b, const Pose& pose_b,
+                                            const Certificate& certificate) {
+  try {
+    const CheckedMesh checked_a(a), checked_b(b);
+    return certificate_check::check({{&checked_a, &checked_b}, {}}, pose_a, pose_b, certificate);
+  } catch (const std::invalid_argument& error) {
+    return {false, error.what(), 0};
+  }
+}
+
+/// The same of meshes with trees, which a certificate of version 3 cites: time is proportional to the size of the
+/// certificate then.
+inline CertificateVerdict check_certificate(const CertificateTree& a, const Pose& pose_a, const CertificateTree& b,
+                                            const Pose& pose_b, const Certificate& certificate) {
+  return certificate_check::check({{&a, &b}, {&a, &b}}, pose_a, pose_b, certificate);
 }
 
 }  // namespace cchip

@@ -125,7 +125,7 @@ bool is_common_point(const Vec3d& point, const AssemblyPart& a, const AssemblyPa
   std::array<PointSide, 2> side;
   for (const std::size_t i : {0U, 1U}) {
     const AssemblyPart& part = i == 0 ? a : b;
-    const auto points = certificate_check::place({&alone, &part.object.mesh()}, {&still, &part.pose}).points;
+    const auto points = certificate_check::posed_vertices({&alone, &part.object.mesh()}, {&still, &part.pose});
     side[i] = side_of(points[0][0], part.object.mesh(), points[1]);
     if (!side[i].is_known) return false;
   }

@@ -49,7 +49,7 @@ enum class Nested { apart, a_in_b, b_in_a, unknown };
 
 /// Two parts in their poses whose surfaces share no point. Surfaces that are open are in nothing.
 Nested nested(const AssemblyPart& a, const AssemblyPart& b, const Pose& pose_b) {
-  const auto points = certificate_check::place({&a.object.mesh(), &b.object.mesh()}, {&a.pose, &pose_b}).points;
+  const auto points = certificate_check::posed_vertices({&a.object.mesh(), &b.object.mesh()}, {&a.pose, &pose_b});
   const Pieces of_a = b.object.is_closed() ? pieces_of(0, a, b, points) : Pieces{true, false};
   const Pieces of_b = a.object.is_closed() ? pieces_of(1, b, a, points) : Pieces{true, false};
   if (of_a.all_outside && of_b.all_outside) return Nested::apart;

@@ -74,10 +74,16 @@ void write_certificate(const Certificate& certificate, std::ostream& out) {
             relation_text(contact.relation) + ']';
     comma = ",";
   }
-  out << text << "],\"order_a\":" << list_of_runs(c.order_a) << ",\"order_b\":" << list_of_runs(c.order_b) << "}\n";
+  text += ']';
+  if (c.version == 3) {
+    text += ",\"tree_a\":" + hash_text(c.tree_a) + ",\"tree_b\":" + hash_text(c.tree_b);
+  } else {
+    text += ",\"order_a\":" + list_of_runs(c.order_a) + ",\"order_b\":" + list_of_runs(c.order_b);
+  }
+  out << text << "}\n";
   for (const CertificateCell& cell : c.cells) {
     text = std::string("{\"cell\":\"") + kind_names[static_cast<std::size_t>(cell.kind)] + '"';
-    if (cell.kind <= CellKind::split_b) text += ",\"at\":" + std::to_string(cell.at);
+    if (cell.kind <= CellKind::split_b && c.version != 3) text += ",\"at\":" + std::to_string(cell.at);
     if (cell.kind >= CellKind::meet) {
       text += ",\"faces\":" + list(std::vector<std::uint32_t>{cell.face_a, cell.face_b});
       text += ",\"a\":" + list(cell.weights_a) + ",\"b\":" + list(cell.weights_b);
@@ -95,6 +101,11 @@ void write_certificate(const Certificate& certificate, std::ostream& out) {
     }
     out << text << "}\n";
   }
+}
+
+void write_certificate_tree(const CertificateTree& tree, std::ostream& out) {
+  out << "{\"collisionchip_tree\":1,\"mesh\":" << hash_text(tree.hash())
+      << ",\"order\":" << list_of_runs(tree.order()) << "}\n";
 }
 
 #ifdef CCHIP_WITH_JSON
@@ -189,7 +200,7 @@ std::uint64_t hash(const json& value) {
 Certificate read_claim(const json& line) {
   Certificate c;
   const json& version = line.at("collisionchip_certificate");
-  require(version.is_number_unsigned() && (version == 1 || version == 2), "no certificate, or another version of it");
+  require(version.is_number_unsigned() && (version == 1 || version == 2 || version == 3), "no certificate, or another version of it");
   c.version = version.get<int>();
   c.hash_a = hash(line.at("mesh_a"));
   c.hash_b = hash(line.at("mesh_b"));
@@ -219,15 +230,21 @@ Certificate read_claim(const json& line) {
     require(contact.is_array() && contact.size() == 3, "a contact is two faces and a relation");
     c.contacts.push_back({number(contact[0]), number(contact[1]), relation(contact[2])});
   }
-  c.order_a = numbers_of_runs(line.at("order_a"));
-  c.order_b = numbers_of_runs(line.at("order_b"));
+  if (c.version == 3) {
+    require(!line.contains("order_a") && !line.contains("order_b"), "an order beside a tree");
+    c.tree_a = hash(line.at("tree_a"));
+    c.tree_b = hash(line.at("tree_b"));
+  } else {
+    c.order_a = numbers_of_runs(line.at("order_a"));
+    c.order_b = numbers_of_runs(line.at("order_b"));
+  }
   return c;
 }
 
-CertificateCell read_cell(const json& line) {
+CertificateCell read_cell(const json& line, bool is_of_trees) {
   CertificateCell cell;
   cell.kind = static_cast<CellKind>(index_of(kind_names, line.at("cell")));
-  if (cell.kind <= CellKind::split_b) cell.at = number(line.at("at"));
+  if (cell.kind <= CellKind::split_b && !is_of_trees) cell.at = number(line.at("at"));
   if (cell.kind >= CellKind::meet) {
     const std::vector<std::uint32_t> faces = numbers(line.at("faces"));
     require(faces.size() == 2, "a point needs two faces");
@@ -266,7 +283,7 @@ std::optional<Certificate> CertificateReader::next() {
     while (read_line()) {
       const json line = parse(line_);
       if (line.is_object() && line.contains("collisionchip_certificate")) break;  // of the next one
-      certificate.cells.push_back(read_cell(line));
+      certificate.cells.push_back(read_cell(line, certificate.version == 3));
     }
     return certificate;
   } catch (const std::bad_alloc&) {
@@ -275,10 +292,35 @@ std::optional<Certificate> CertificateReader::next() {
     throw std::runtime_error("certificate, line " + std::to_string(number_) + ": " + shortened(error.what()));
   }
 }
+CertificateTree read_certificate_tree(const Mesh& mesh, std::istream& in) {
+  const auto refuse = [](const std::string& why) { throw std::runtime_error("tree: " + why); };
+  std::string text;
+  if (!std::getline(in, text)) refuse("the file is empty or cannot be read");
+  if (in.peek() != std::istream::traits_type::eof()) refuse("more than one line");
+  try {
+    const json line = parse(text);
+    require(line.at("collisionchip_tree") == 1, "no tree, or another version of it");
+    CertificateTree tree(mesh, numbers_of_runs(line.at("order")));
+    require(hash(line.at("mesh")) == tree.hash(), "it is of another mesh");
+    return tree;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    refuse(shortened(error.what()));
+    throw;
+  }
+}
 #else
-std::optional<Certificate> CertificateReader::next() {
+namespace {
+
+[[noreturn]] void refuse_without_json() {
   throw std::runtime_error("certificate: this library was built without nlohmann-json; build it with");
 }
+
+}  // namespace
+
+std::optional<Certificate> CertificateReader::next() { refuse_without_json(); }
+CertificateTree read_certificate_tree(const Mesh& /*mesh*/, std::istream& /*in*/) { refuse_without_json(); }
 #endif
 
 Certificate read_certificate(std::istream& in) {

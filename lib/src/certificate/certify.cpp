@@ -17,6 +17,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "box_division.hpp"
 #include "pair_proof.hpp"
 
 namespace cchip {
@@ -141,19 +142,97 @@ std::vector<Digits> digits(const std::array<int, 3>& d, int sign) {
   return {std::to_string(sign * d[0]), std::to_string(sign * d[1]), std::to_string(sign * d[2])};
 }
 
+/// Sets of faces by trees that are made for one certificate, tried along fixed directions.
+class DopDivision {
+ public:
+  using Node = std::uint32_t;
+
+  DopDivision(const std::array<const Mesh*, 2>& meshes, std::array<std::vector<Vec3d>, 2> points,
+              const Directions& directions, double within, bool moves)
+      : directions_(directions), within_(within), moves_(moves) {
+    for (const std::size_t side : {0U, 1U}) trees_[side] = Tree(*meshes[side], std::move(points[side]), directions);
+    for (std::size_t d = 0; d < direction_count; ++d) {
+      lengths_[d] = std::hypot(directions[d][0], directions[d][1], directions[d][2]);
+    }
+  }
+
+  static Node root(std::size_t /*side*/) { return 0; }
+  Node first_half(std::size_t side, Node n) { return divided(side, n).first; }
+  Node second_half(std::size_t side, Node n) { return divided(side, n).second; }
+  std::uint32_t split_at(std::size_t side, Node n) { return node(side, divided(side, n).second).begin; }
+  bool is_single(std::size_t side, Node n) const { return node(side, n).end - node(side, n).begin == 1; }
+  std::uint32_t face(std::size_t side, Node n) const { return trees_[side].order[node(side, n).begin]; }
+  double size(std::size_t side, Node n) const { return node(side, n).size; }
+  certificate_check::Faces faces(std::size_t side, Node n) const {
+    const std::uint32_t* const order = trees_[side].order.data();
+    return {order + node(side, n).begin, order + node(side, n).end};
+  }
+
+  template <class Accept>
+  bool propose(Node node_a, Node node_b, const Accept& accept) const {
+    const Tree::Node &a = node(0, node_a), &b = node(1, node_b);
+    for (std::size_t d = 0; d < direction_count; ++d) {
+      const double size = std::max(std::max(std::abs(a.least[d]), std::abs(a.greatest[d])),
+                                   std::max(std::abs(b.least[d]), std::abs(b.greatest[d])));
+      for (const int sign : {1, -1}) {
+        const double gap = sign > 0 ? b.least[d] - a.greatest[d] : a.least[d] - b.greatest[d];
+        const double least = within_ == 0 ? 0 : (1 + 0x1p-40) * within_ * lengths_[d];
+        // Closer ones are left to pairs of faces, but for those that are flush and part.
+        if (!(gap - least > (moves_ ? -0x1p-45 : 0x1p-45) * size)) continue;
+        if (accept(BoxDivision::Proposal{digits(directions_[d], sign), false})) return true;
+      }
+    }
+    return false;
+  }
+
+  /// Each face once; sets that no cell divides are in ascending order, which makes the file short.
+  std::vector<std::uint32_t> order(std::size_t side, const std::vector<CertificateCell>& cells) const {
+    std::vector<std::uint32_t> order = trees_[side].order;
+    std::vector<bool> begins(order.size());
+    for (const CertificateCell& cell : cells) {
+      if (cell.kind == (side == 0 ? CellKind::split_a : CellKind::split_b)) begins[cell.at] = true;
+    }
+    auto from = order.begin();
+    for (auto i = from; i != order.end(); ++i) {
+      if (!begins[static_cast<std::size_t>(i - order.begin())]) continue;
+      std::sort(from, i);
+      from = i;
+    }
+    std::sort(from, order.end());
+    return order;
+  }
+
+ private:
+  const Tree::Node& node(std::size_t side, Node n) const { return trees_[side].node(n); }
+  const Tree::Node& divided(std::size_t side, Node n) {
+    trees_[side].divide(n);
+    return node(side, n);
+  }
+
+  Directions directions_;
+  std::array<double, direction_count> lengths_ = {};  ///< about
+  double within_;                                     ///< of the claim, about, in the unit of the rounded points
+  bool moves_;                                        ///< the claim is of a translation
+  std::array<Tree, 2> trees_;
+};
+
 class Maker {
  public:
-  Maker(const CollisionQuery& query, const CollisionRequest& request, bool below)
-      : query_(query), request_(request), checker_{{&query.a->mesh(), &query.b->mesh()}, {}, 0, below} {
-    certificate_check::Placed placed =
-        certificate_check::place(checker_.mesh, {query.pose_a, query.pose_b}, request.within);
-    checker_.points = std::move(placed.points);
-    checker_.within = std::move(placed.length);
+  /// \param trees that the certificate cites; null: none
+  Maker(const CollisionQuery& query, const CollisionRequest& request, bool below, const CitedTrees& trees)
+      : query_(query),
+        request_(request),
+        own_(trees.a == nullptr ? std::make_unique<Own>(query) : nullptr),
+        trees_{trees.a, trees.b},
+        mesh_{trees.a == nullptr ? &own_->a : trees.a, trees.b == nullptr ? &own_->b : trees.b},
+        checker_{{&query.a->mesh(), &query.b->mesh()},
+                 certificate_check::Placement(mesh_, {query.pose_a, query.pose_b}, request.within),
+                 below} {
     certificate_.within = request.within;
     certificate_.below = below;
     certificate_.version = request.within > 0 ? 2 : 1;
-    certificate_.hash_a = hash_mesh(*checker_.mesh[0]);
-    certificate_.hash_b = hash_mesh(*checker_.mesh[1]);
+    certificate_.hash_a = mesh_[0]->hash();
+    certificate_.hash_b = mesh_[1]->hash();
     certificate_.hash_poses = hash_poses(*query.pose_a, *query.pose_b);
     if (request.least == Relation::crossing) certificate_.least = Relation::crossing;
   }
@@ -187,23 +266,34 @@ class Maker {
   }
 
   Certificate search() {
-    const Directions directions = directions_of({query_.pose_a, query_.pose_b});
-    std::array<std::vector<Vec3d>, 2> points = rounded_points();
-    trees_[0] = Tree(*checker_.mesh[0], std::move(points[0]), directions);
-    trees_[1] = Tree(*checker_.mesh[1], std::move(points[1]), directions);
-    directions_ = directions;
-    for (std::size_t d = 0; d < direction_count; ++d) {
-      lengths_[d] = std::hypot(directions[d][0], directions[d][1], directions[d][2]);
+    if (trees_[0] != nullptr) {
+      BoxDivision division(trees_, {query_.pose_a, query_.pose_b}, request_.within, certificate_.along);
+      if (!descend(division, division.root(0), division.root(1))) return ended();
+      certificate_.version = 3;
+      certificate_.tree_a = trees_[0]->tree_hash();
+      certificate_.tree_b = trees_[1]->tree_hash();
+    } else {
+      const Directions directions = directions_of({query_.pose_a, query_.pose_b});
+      double within = 0;
+      std::array<std::vector<Vec3d>, 2> points = rounded_points(within);
+      DopDivision division(checker_.mesh, std::move(points), directions, within, checker_.along.has_value());
+      if (!descend(division, division.root(0), division.root(1))) return ended();
+      certificate_.order_a = division.order(0, certificate_.cells);
+      certificate_.order_b = division.order(1, certificate_.cells);
     }
-    if (!descend(0, 0)) return is_blocked_ ? Certificate() : one_contact(certificate_.cells.back());
-    sort_undivided();
-    certificate_.order_a = trees_[0].order;
-    certificate_.order_b = trees_[1].order;
     claim_all();
     return std::move(certificate_);
   }
 
  private:
+  /// The meshes of a query without trees.
+  struct Own {
+    explicit Own(const CollisionQuery& query) : a(query.a->mesh()), b(query.b->mesh()) {}
+    CheckedMesh a, b;
+  };
+
+  /// After a search that has ended before all was looked at.
+  Certificate ended() { return is_blocked_ ? Certificate() : one_contact(certificate_.cells.back()); }
   bool ends_search(const CertificateCell& cell) const {
     return request_.contacts == CollisionRequest::Contacts::first &&
            cell.kind == (request_.within > 0         ? CellKind::near
@@ -227,7 +317,7 @@ class Maker {
   }
   CertificateCell pair(std::uint32_t face_a, std::uint32_t face_b) const {
     const std::array<std::vector<Point>, 2> points = points_of(face_a, face_b);
-    CertificateCell cell = request_.within > 0 ? prove_distance(points[0], points[1], checker_.within, checker_.below)
+    CertificateCell cell = request_.within > 0 ? prove_distance(points[0], points[1], checker_.placement.length(), checker_.below)
                                                : prove_pair(points[0], points[1], request_.tells_relation());
     cell.face_a = face_a;
     cell.face_b = face_b;
@@ -249,23 +339,6 @@ class Maker {
     if (cell.kind == CellKind::touch) result.relation = Relation::touching;
     return result;
   }
-  /// Sets that no cell divides are put in ascending order, which makes the file short.
-  void sort_undivided() {
-    for (const std::size_t side : {0U, 1U}) {
-      std::vector<std::uint32_t>& order = trees_[side].order;
-      std::vector<bool> begins(order.size());
-      for (const CertificateCell& cell : certificate_.cells) {
-        if (cell.kind == (side == 0 ? CellKind::split_a : CellKind::split_b)) begins[cell.at] = true;
-      }
-      auto from = order.begin();
-      for (auto i = from; i != order.end(); ++i) {
-        if (!begins[static_cast<std::size_t>(i - order.begin())]) continue;
-        std::sort(from, i);
-        from = i;
-      }
-      std::sort(from, order.end());
-    }
-  }
   void claim_all() {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::optional<Relation>> contacts;
     Relation relation = Relation::apart;
@@ -282,12 +355,13 @@ class Maker {
   }
 
   /// Doubles close to the points, about a vertex of B, which candidates are chosen by; every one is checked exactly.
-  std::array<std::vector<Vec3d>, 2> rounded_points() {
-    const Point& origin = checker_.corner(1, 0, 0);
+  /// \param within the length of the claim, in the unit of these
+  std::array<std::vector<Vec3d>, 2> rounded_points(double& within) const {
+    const Point origin = checker_.corner(1, 0, 0);
     unsigned bits = 0;
-    std::array<std::vector<Point>, 2> relative;
+    std::array<std::vector<Point>, 2> relative =
+        certificate_check::posed_vertices(checker_.placement, checker_.mesh);
     for (const std::size_t side : {0U, 1U}) {
-      relative[side] = checker_.points[side];
       for (Point& p : relative[side]) {
         for (std::size_t i = 0; i < 3; ++i) {
           p[i] -= origin[i];
@@ -295,9 +369,10 @@ class Maker {
         }
       }
     }
-    if (checker_.within != 0) bits = std::max(bits, static_cast<unsigned>(msb(checker_.within)));
+    const Int& length = checker_.placement.length();
+    if (length != 0) bits = std::max(bits, static_cast<unsigned>(msb(length)));
     const unsigned shift = bits > 500 ? bits - 500 : 0;  // such coordinates are doubles
-    within_ = Int(checker_.within >> shift).convert_to<double>();
+    within = Int(length >> shift).convert_to<double>();
     std::array<std::vector<Vec3d>, 2> result;
     for (const std::size_t side : {0U, 1U}) {
       for (Point& p : relative[side]) {
@@ -310,70 +385,50 @@ class Maker {
     return result;
   }
 
-  static std::vector<std::uint32_t> faces(const Tree& tree, const Tree::Node& node) {
-    return {tree.order.begin() + static_cast<std::ptrdiff_t>(node.begin),
-            tree.order.begin() + static_cast<std::ptrdiff_t>(node.end)};
-  }
-
-  /// Separates two sets along one of the fixed directions, if that is easy.
-  bool separate(const Tree::Node& a, const Tree::Node& b) {
-    for (std::size_t d = 0; d < direction_count; ++d) {
-      const double size = std::max(std::max(std::abs(a.least[d]), std::abs(a.greatest[d])),
-                                   std::max(std::abs(b.least[d]), std::abs(b.greatest[d])));
-      for (const int sign : {1, -1}) {
-        const double gap = sign > 0 ? b.least[d] - a.greatest[d] : a.least[d] - b.greatest[d];
-        const double least = within_ == 0 ? 0 : (1 + 0x1p-40) * within_ * lengths_[d];
-        // Closer ones are left to pairs of faces, but for those that are flush and part.
-        if (!(gap - least > (checker_.along ? -0x1p-45 : 0x1p-45) * size)) continue;
-        CertificateCell cell;
-        cell.direction = digits(directions_[d], sign);
-        if (!checker_.separates(cell.direction, {faces(trees_[0], a), faces(trees_[1], b)})) continue;
-        certificate_.cells.push_back(std::move(cell));
-        return true;
-      }
-    }
-    return false;
-  }
-
   /// Appends the cells of two sets. \returns false if the search has ended at a contact, the last cell
-  bool descend(std::uint32_t node_a, std::uint32_t node_b) {
-    const Tree::Node& a = trees_[0].node(node_a);
-    const Tree::Node& b = trees_[1].node(node_b);
-    if (separate(a, b)) return true;
-    const bool single_a = a.end - a.begin == 1;
-    const bool single_b = b.end - b.begin == 1;
+  template <class Division>
+  bool descend(Division& division, const typename Division::Node& a, const typename Division::Node& b) {
+    const auto accept = [&](const BoxDivision::Proposal& proposal) {
+      if (!proposal.is_certain && !checker_.separates(certificate_check::direction_of(proposal.direction),
+                                                      {{division.faces(0, a), division.faces(1, b)}})) {
+        return false;
+      }
+      certificate_.cells.emplace_back().direction = proposal.direction;
+      return true;
+    };
+    if (division.propose(a, b, accept)) return true;
+    const bool single_a = division.is_single(0, a);
+    const bool single_b = division.is_single(1, b);
     if (single_a && single_b && checker_.along) {
-      std::optional<CertificateCell> cell = clear_pair(trees_[0].order[a.begin], trees_[1].order[b.begin]);
+      std::optional<CertificateCell> cell = clear_pair(division.face(0, a), division.face(1, b));
       is_blocked_ = !cell;
       if (cell) certificate_.cells.push_back(*std::move(cell));
       return !is_blocked_;
     }
     if (single_a && single_b) {
-      certificate_.cells.push_back(pair(trees_[0].order[a.begin], trees_[1].order[b.begin]));
+      certificate_.cells.push_back(pair(division.face(0, a), division.face(1, b)));
       return !ends_search(certificate_.cells.back());
     }
-    CertificateCell split;
-    const bool of_b = single_a || (!single_b && b.size > a.size);
+    const bool of_b = single_a || (!single_b && division.size(1, b) > division.size(0, a));
+    CertificateCell& split = certificate_.cells.emplace_back();
     split.kind = of_b ? CellKind::split_b : CellKind::split_a;
-    Tree& tree = trees_[of_b ? 1 : 0];
-    tree.divide(of_b ? node_b : node_a);
-    const Tree::Node& parent = of_b ? b : a;
-    split.at = tree.node(parent.second).begin;
-    certificate_.cells.push_back(split);
-    for (const std::uint32_t child : {parent.first, parent.second}) {
-      if (!(of_b ? descend(node_a, child) : descend(child, node_b))) return false;
+    const std::size_t side = of_b ? 1 : 0;
+    const typename Division::Node& parent = of_b ? b : a;
+    split.at = division.split_at(side, parent);
+    for (const bool second : {false, true}) {
+      const auto child = second ? division.second_half(side, parent) : division.first_half(side, parent);
+      if (!(of_b ? descend(division, a, child) : descend(division, child, b))) return false;
     }
     return true;
   }
 
   CollisionQuery query_;
   CollisionRequest request_;
+  std::unique_ptr<Own> own_;
+  std::array<const CertificateTree*, 2> trees_;
+  std::array<const CheckedMesh*, 2> mesh_;
   certificate_check::Checker checker_;
-  Directions directions_ = {};
-  std::array<double, direction_count> lengths_ = {};  ///< of the directions, about
-  bool is_blocked_ = false;                           ///< a search along a translation has met a pair of faces
-  double within_ = 0;                                 ///< of the claim, about, in the unit of the rounded points
-  std::array<Tree, 2> trees_;
+  bool is_blocked_ = false;  ///< a search along a translation has met a pair of faces
   Certificate certificate_;
 };
 
@@ -385,40 +440,55 @@ std::string name(const Contact& contact) {
   return "faces " + std::to_string(contact.face_a) + " of A and " + std::to_string(contact.face_b) + " of B";
 }
 
-void check_request(const CollisionQuery& query, const CollisionRequest& request) {
+void check_request(const CollisionQuery& query, const CollisionRequest& request, const CitedTrees& trees) {
   CollisionRequest proved = request;
   proved.certificate = true;
   check_query(query, proved);
+  if (trees.a == nullptr && trees.b == nullptr) return;
+  if (trees.a == nullptr || trees.b == nullptr) {
+    throw std::invalid_argument("certify: one tree is missing: give those of both objects, or none");
+  }
+  if (&trees.a->mesh() != &query.a->mesh() || &trees.b->mesh() != &query.b->mesh()) {
+    throw std::invalid_argument("certify: a tree is of another mesh: make it of the object's mesh()");
+  }
 }
 
 }  // namespace
 
-Certificate certify(const CollisionQuery& query, const CollisionRequest& request) {
-  check_request(query, request);
-  return Maker(query, request, false).search();
+Certificate certify(const CollisionQuery& query, const CollisionRequest& request, const CitedTrees& trees) {
+  check_request(query, request, trees);
+  return Maker(query, request, false, trees).search();
 }
 
-Certificate certify_below(const CollisionQuery& query, double distance, CollisionRequest::Contacts contacts) {
+CertificateTree make_certificate_tree(const Mesh& mesh) {
+  check_faces(mesh);
+  return {mesh, certificate_order(mesh)};
+}
+
+Certificate certify_below(const CollisionQuery& query, double distance, CollisionRequest::Contacts contacts,
+                          const CitedTrees& trees) {
   CollisionRequest request;
   request.contacts = contacts;
   request.within = distance;
   if (!(distance > 0))
     throw std::invalid_argument("certify_below: the distance is " + decimal_text(distance) + ": ask for one above 0");
-  check_request(query, request);
-  return Maker(query, request, true).search();
+  check_request(query, request, trees);
+  return Maker(query, request, true, trees).search();
 }
 
-std::optional<Certificate> certify_clear_along(const CollisionQuery& query, const Vec3d& along) {
-  check_request(query, {});
+std::optional<Certificate> certify_clear_along(const CollisionQuery& query, const Vec3d& along,
+                                               const CitedTrees& trees) {
+  check_request(query, {}, trees);
   if (along.isZero(0) || !along.allFinite()) {
     throw std::invalid_argument("certify_clear_along: the translation is 0 or not finite: give another one");
   }
-  return Maker(query, {}, false).prove_clear_along(along);
+  return Maker(query, {}, false, trees).prove_clear_along(along);
 }
 
-Certificate certify(const CollisionQuery& query, const CollisionRequest& request, const CollisionResult& answer) {
-  check_request(query, request);
-  Maker maker(query, request, false);
+Certificate certify(const CollisionQuery& query, const CollisionRequest& request, const CollisionResult& answer,
+                    const CitedTrees& trees) {
+  check_request(query, request, trees);
+  Maker maker(query, request, false, trees);
   const bool first = request.contacts == CollisionRequest::Contacts::first;
   if (first && answer.hit && !answer.contacts.empty() &&
       (!request.tells_relation() || answer.relation == Relation::crossing)) {

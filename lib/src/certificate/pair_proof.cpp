@@ -9,6 +9,10 @@ namespace {
 using certificate_check::Int;
 using certificate_check::Point;
 
+using certificate_check::dot;
+
+Int dot(const std::vector<Int>& d, const Point& p) { return d[0] * p[0] + d[1] * p[1] + d[2] * p[2]; }
+
 std::vector<Digits> digits(const std::vector<Int>& numbers) {
   std::vector<Digits> result;
   for (const Int& number : numbers) result.push_back(number.str());
@@ -167,7 +171,7 @@ void shorten(std::vector<Point>& a, std::vector<Point>& b) {
 bool strictly_below(const std::vector<Int>& d, const std::vector<Point>& a, const std::vector<Point>& b) {
   for (const Point& p : a) {
     for (const Point& q : b) {
-      if (certificate_check::dot(d, p) >= certificate_check::dot(d, q)) return false;
+      if (dot(d, p) >= dot(d, q)) return false;
     }
   }
   return true;
@@ -201,7 +205,6 @@ std::vector<Int> as_vector(const Point& x) { return {x[0], x[1], x[2]}; }
 
 Point minus(const Point& p, const Point& q) { return {p[0] - q[0], p[1] - q[1], p[2] - q[2]}; }
 
-Int dot(const Point& p, const Point& q) { return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]; }
 
 /// Weights of some vertices of A and of B; those of either have the sum `total`.
 struct NamedPoints {
@@ -326,7 +329,7 @@ bool span_space(const std::vector<Point>& a, const std::vector<Point>& b, Certif
       if (is_zero(n)) continue;
       normal = n;
       for (std::size_t m = 0; m < k; ++m) {
-        if (certificate_check::dot(as_vector(n), edges[m]) == 0) continue;
+        if (dot(as_vector(n), edges[m]) == 0) continue;
         cell.span = {names[m], names[k], names[i]};
         return true;
       }
@@ -383,7 +386,7 @@ std::optional<CertificateCell> prove_clear(const std::vector<Point>& points_a, c
   const bool meets = programme.meet();
   if (meets && programme.meet_inside()) return std::nullopt;
   const auto separates = [&](const std::vector<Int>& d) {
-    const Int rise = certificate_check::dot(d, along);
+    const Int rise = dot(d, along);
     return rise >= 0 && strictly_below(d, a, b);
   };
   cell.direction = digits(short_direction(programme.direction(meets), separates));
@@ -416,7 +419,7 @@ CertificateCell prove_distance(const std::vector<Point>& a, const std::vector<Po
     std::optional<Int> gap;
     for (const Point& p : a) {
       for (const Point& q : b) {
-        const Int here = certificate_check::dot(d, q) - certificate_check::dot(d, p);
+        const Int here = dot(d, q) - dot(d, p);
         if (!gap || here < *gap) gap = here;
       }
     }

@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks a certificate (docs/cpp/certificates.md) with exact arithmetic and nothing of the library.
 
-    python check.py A B POSES CERTIFICATE
+    python check.py A B POSES CERTIFICATE [TREE_A TREE_B]
 
 A, B: OFF or OBJ files of triangles and quads. POSES: for each certificate of the file 24 numbers, the matrix [R | t] of
-A row by row, then that of B.
+A row by row, then that of B. TREE_A, TREE_B: the trees that certificates of version 3 cite.
 Exit code 0: accepted, and the claim is printed; 1: refused, with the first cell that fails; 2: a file cannot be
 read."""
 import json
@@ -18,6 +18,7 @@ from fractions import Fraction
 getattr(sys, "set_int_max_str_digits", int)(20001)
 dot = lambda d, p: sum(x * y for x, y in zip(d, p))
 RANK = {"apart": 0, "touching": 1, "crossing": 2}
+MEASURES = {"within", "below", "along"}
 
 
 class Refused(Exception): ...
@@ -82,9 +83,39 @@ def hash_mesh(vertices, faces, numbers):
     return hash_words(b"".join(struct.pack("<II", n, len(f)) + b"".join(map(pack, f)) for f, n in zip(faces, numbers)))
 
 
-def placed(vertices, pose):
-    rows = [[Fraction(x) for x in pose[4 * r:4 * r + 4]] for r in range(3)]
-    return [[sum((r[i] * Fraction(v[i]) for i in range(3)), r[3]) for r in rows] for v in vertices]
+class Posed(dict):
+    """The vertices of a mesh in its pose, by numbers, made when they are asked for."""
+
+    def __init__(self, vertices, pose):
+        self.vertices, self.rows = vertices, [[Fraction(x) for x in pose[4 * r:4 * r + 4]] for r in range(3)]
+
+    def at(self, p):
+        return [sum((r[i] * Fraction(p[i]) for i in range(3)), r[3]) for r in self.rows]
+
+    def __missing__(self, number):
+        self[number] = self.at(self.vertices[number])
+        return self[number]
+
+
+def hash_tree(mesh, order):
+    return hash_words(struct.pack(f"<{len(order) + 1}Q", int(mesh, 16), *order))
+
+
+def read_tree(text):
+    """The order of a tree and the hash of its mesh."""
+    require(text.count("\n") == text.endswith("\n"), "a tree is one line")
+    tree = parse(text)
+    require(type(tree["collisionchip_tree"]) is int and tree["collisionchip_tree"] == 1, "no tree of this version")
+    return tree["mesh"], expanded(tree["order"])
+
+
+def hull(faces, vertices, posed):
+    """Points whose hull holds the faces: their vertices, of more than four the corners of their box in the mesh."""
+    used = {v for f in faces for v in f}
+    if len(faces) <= 4:
+        return [posed[v] for v in used]
+    low, high = ([end(axis) for axis in zip(*(vertices[v] for v in used))] for end in (min, max))
+    return [posed.at([(low, high)[n >> i & 1][i] for i in range(3)]) for n in range(8)]
 
 
 def integers(texts, count):
@@ -169,7 +200,7 @@ def check_point(cell, corners, within, below):
 
 def check_claim(c, found):
     """found: of two faces of the files, the set of kinds of the cells that name points of them."""
-    strongest, all_told, contacts = 0, c["all"] and c["collisionchip_certificate"] == 1, []
+    strongest, all_told, contacts = 0, c["all"] and not MEASURES & c.keys(), []
     for faces, kinds in sorted(found.items()):
         told = "near" not in kinds and ("cross" in kinds or (c["all"] and "meet" not in kinds))
         rank = 2 if "cross" in kinds else 1
@@ -183,13 +214,15 @@ def check_claim(c, found):
     require(c["relation"] is None or RANK[c["relation"]] == proved, "another relation than claimed")
 
 
-def check(meshes, poses, lines):
-    """meshes: of A and B (vertices, faces, number in the file of each face). Returns the claim or raises Refused."""
+def check(meshes, poses, lines, trees=None):
+    """meshes: of A and B (vertices, faces, number in the file of each face). trees: of A and B, as read_tree() returns
+    them. Returns the claim or raises Refused."""
     number = "claim"
     try:
         c, cells = parse(lines[0]), lines[1:]
         version, claimed = c["collisionchip_certificate"], c["contacts"]
-        require(type(version) is int and version == (2 if {"within", "below", "along"} & c.keys() else 1),
+        cites = type(version) is int and version == 3
+        require(c["all"] is True if cites else type(version) is int and version == (2 if MEASURES & c.keys() else 1),
                 "no certificate of this version")
         require(isinstance(claimed, list) and all(type(f) is int for x in claimed for f in x[:2]),
                 "no list of contacts")
@@ -198,8 +231,12 @@ def check(meshes, poses, lines):
         along = translation(c)
         hashes = [hash_mesh(*m) for m in meshes] + [hash_words(struct.pack("<24d", *(x + 0.0 for x in poses)))]
         require([c["mesh_a"], c["mesh_b"], c["poses"]] == hashes, "the certificate is of other meshes or poses")
-        points = [placed(m[0], p) for m, p in zip(meshes, (poses[:12], poses[12:]))]
-        found, orders = {}, (expanded(c["order_a"]), expanded(c["order_b"]))
+        points = [Posed(m[0], p) for m, p in zip(meshes, (poses[:12], poses[12:]))]
+        if cites:
+            require(trees and not {"order_a", "order_b"} & c.keys(), "it cites trees, and none are given")
+            require([t[0] for t in trees] == hashes[:2], "a tree of another mesh")
+            require([c["tree_a"], c["tree_b"]] == [hash_tree(*t) for t in trees], "it cites other trees")
+        found, orders = {}, [t[1] for t in trees] if cites else (expanded(c["order_a"]), expanded(c["order_b"]))
         once = [sorted(o) == [*range(c["all"] * len(m[1]))] for o, m in zip(orders, meshes)]
         require(all(once), "an order does not hold each face once")
         require(all(orders) if c["all"] else len(cells) == 1, "no faces, or other than one cell for one contact")
@@ -211,11 +248,16 @@ def check(meshes, poses, lines):
             sets, kind = todo.pop(), cell["cell"]
             if kind in ("split_a", "split_b"):
                 side = kind == "split_b"
-                (begin, end), at = sets[side], cell["at"]
+                begin, end = sets[side]
+                at = begin + (end - begin) // 2 if cites else cell["at"]
                 require(type(at) is int and begin < at < end, "a split leaves one half empty")
                 todo += [[sets[0], half] if side else [half, sets[1]] for half in ((at, end), (begin, at))]
             elif kind == "separated":
-                sides = [[p for f in orders[s][slice(*sets[s])] for p in corners(s, f)] for s in (0, 1)]
+                if cites:
+                    sides = [hull([meshes[s][1][f] for f in orders[s][slice(*sets[s])]], meshes[s][0], points[s])
+                             for s in (0, 1)]
+                else:
+                    sides = [[p for f in orders[s][slice(*sets[s])] for p in corners(s, f)] for s in (0, 1)]
                 require(separates(cell["direction"], sides, within, below, along), "A is not far enough below B")
             else:
                 kinds = ("near",) if within else () if along else ("meet", "touch", "cross")
@@ -251,16 +293,20 @@ def read_mesh(text):
 
 def main(arguments):
     try:
-        require(len(arguments) == 4, "usage:" + __doc__)
+        require(len(arguments) in (4, 6), "usage:" + __doc__)
         texts = []
         for n, path in enumerate(arguments):
-            with open(path, encoding="utf-8", newline="\n" if n == 3 else None) as file:
+            with open(path, encoding="utf-8", newline="\n" if n >= 3 else None) as file:
                 texts.append(file.read())
         meshes, poses = [read_mesh(text) for text in texts[:2]], [float(x) for x in texts[2].split()]
         certificates = split(texts[3])
         if not certificates or len(poses) != 24 * len(certificates):
             raise ValueError(f"{len(poses)} numbers in POSES, but {len(certificates)} certificates; give 24 for each")
-        claims = [check(meshes, poses[24 * n:24 * n + 24], lines) for n, lines in enumerate(certificates)]
+        try:
+            trees = [read_tree(text) for text in texts[4:]]
+        except (KeyError, TypeError, RecursionError, OverflowError) as error:
+            raise ValueError(f"no tree: {error}") from None
+        claims = [check(meshes, poses[24 * n:24 * n + 24], lines, trees) for n, lines in enumerate(certificates)]
     except Refused as error:
         sys.exit(print(f"refused, {error}") or 1)
     except (OSError, ValueError, IndexError) as error:

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <boost/multiprecision/cpp_int.hpp>
-#include <cchip/certificate.hpp>
+#include <cchip/certificate_tree.hpp>
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
@@ -19,108 +19,110 @@ namespace cchip::certificate_check {
 using Int = boost::multiprecision::cpp_int;
 using Point = std::array<Int, 3>;
 
-inline void require(bool holds, const char* otherwise) {
-  if (!holds) throw std::invalid_argument(otherwise);
-}
-
-/// A double as m 2^e with an odd m, or as 0 2^0.
-struct Binary {
-  std::int64_t m = 0;
+/// x / 2^exponent. \pre 2^exponent divides x
+inline Int whole(double x, int exponent) {
+  if (x == 0) return 0;
   int e = 0;
-};
-inline Binary binary(double x) {
-  require(std::isfinite(x), "a number of a mesh or a pose is not finite");
-  Binary result;
-  if (x == 0) return result;
-  result.m = static_cast<std::int64_t>(std::ldexp(std::frexp(x, &result.e), 53));
-  for (result.e -= 53; result.m % 2 == 0; ++result.e) result.m /= 2;
-  return result;
+  const auto m = static_cast<std::int64_t>(std::ldexp(std::frexp(x, &e), 53));
+  const int shift = e - 53 - exponent;
+  return shift >= 0 ? Int(m) << shift : Int(m / (std::int64_t{1} << -shift));
 }
 
-/// Doubles as integers times the same power of two.
-class Scale {
+/// The point times a power of two. \throws std::invalid_argument it is not finite
+inline Point whole_point(const Vec3d& p) {
+  require(p.allFinite(), "a number of a mesh or a pose is not finite");
+  PowerOfTwo unit;
+  for (const double x : p) unit.add(x);
+  return {whole(p[0], unit.exponent()), whole(p[1], unit.exponent()), whole(p[2], unit.exponent())};
+}
+
+inline Int dot(const Point& p, const Point& q) { return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]; }
+
+/// Two meshes in their poses, and a length: all in one unit, a power of two, in which they are integers.
+class Placement {
  public:
-  void add(double x) {
-    const Binary b = binary(x);
-    if (b.m != 0 && (!any_ || b.e < least_)) {
-      least_ = b.e;
-      any_ = true;
+  /// The value of a direction on points of a mesh in its pose.
+  struct Functional {
+    Point factors;  ///< of coordinates of the mesh
+    Int constant;
+    Int operator()(const Point& of_mesh) const { return dot(factors, of_mesh) + constant; }
+  };
+
+  /// Keeps references to the meshes.
+  /// \throws std::invalid_argument a number of a pose is not finite
+  Placement(const std::array<const CheckedMesh*, 2>& mesh, const std::array<const Pose*, 2>& pose, double length = 0)
+      : mesh_(mesh) {
+    PowerOfTwo entry, shift;
+    for (const Pose* p : pose) {
+      require(p->matrix().allFinite(), "a number of a mesh or a pose is not finite");
+      for (const double x : p->linear().reshaped()) entry.add(x);
+      for (const double x : p->translation()) shift.add(x);
+    }
+    shift.add(length);
+    const auto of_products = [&](std::size_t side) { return mesh[side]->unit().exponent() + entry.exponent(); };
+    const int unit = std::min({of_products(0), of_products(1), shift.exponent()});
+    const auto in_unit = [&](double x) { return whole(x, shift.exponent()) << (shift.exponent() - unit); };
+    length_ = in_unit(length);
+    for (const std::size_t side : {0U, 1U}) {
+      for (std::size_t row = 0; row < 3; ++row) {
+        const auto at = [&](int column) { return (*pose[side])(static_cast<int>(row), column); };
+        for (int i = 0; i < 3; ++i) {
+          rows_[side][row][static_cast<std::size_t>(i)] = whole(at(i), entry.exponent()) << (of_products(side) - unit);
+        }
+        shifts_[side][row] = in_unit(at(3));
+      }
     }
   }
-  /// The exponent: 2^exponent() divides all that were added.
-  int exponent() const { return least_; }
-  Int whole(double x) const {
-    const Binary b = binary(x);
-    if (b.m == 0) return 0;
-    return Int(b.m) << (b.e - least_);
+
+  const Int& length() const { return length_; }
+  /// Coordinates of the mesh, in its own unit.
+  Point of_mesh(std::size_t side, const Vec3d& p) const {
+    const int exponent = mesh_[side]->unit().exponent();
+    return {whole(p[0], exponent), whole(p[1], exponent), whole(p[2], exponent)};
+  }
+  Point posed(std::size_t side, const Vec3d& p) const {
+    const Point x = of_mesh(side, p);
+    const std::array<Point, 3>& rows = rows_[side];
+    const Point& shift = shifts_[side];
+    return {dot(rows[0], x) + shift[0], dot(rows[1], x) + shift[1], dot(rows[2], x) + shift[2]};
+  }
+  Functional functional(std::size_t side, const Point& direction) const {
+    Functional result;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t row = 0; row < 3; ++row) result.factors[i] += direction[row] * rows_[side][row][i];
+    }
+    result.constant = dot(direction, shifts_[side]);
+    return result;
   }
 
  private:
-  int least_ = 0;
-  bool any_ = false;
+  std::array<const CheckedMesh*, 2> mesh_;
+  Int length_;
+  std::array<std::array<Point, 3>, 2> rows_;
+  std::array<Point, 2> shifts_;
 };
 
-/// The point times a power of two.
-inline Point whole_point(const Vec3d& p) {
-  Scale scale;
-  for (int i = 0; i < 3; ++i) scale.add(p[i]);
-  return {scale.whole(p[0]), scale.whole(p[1]), scale.whole(p[2])};
-}
-
-struct Placed {
+/// The vertices of the faces of both meshes in their poses, all multiplied by the same power of two; exact.
+inline std::array<std::vector<Point>, 2> posed_vertices(const Placement& placement,
+                                                        const std::array<const Mesh*, 2>& mesh) {
   std::array<std::vector<Point>, 2> points;
-  Int length = 0;
-};
-/// The vertices of the faces of both meshes in their poses and a length, all multiplied by the same power of two;
-/// exact.
-inline Placed place(const std::array<const Mesh*, 2>& mesh, const std::array<const Pose*, 2>& pose, double length = 0) {
-  std::array<std::vector<bool>, 2> used;
-  Scale coordinate, entry, shift;
   for (const std::size_t side : {0U, 1U}) {
-    used[side].resize(mesh[side]->vertices.size());
+    points[side].resize(mesh[side]->vertices.size());
+    std::vector<bool> placed(points[side].size());
     for (const Mesh::Face& face : mesh[side]->faces) {
-      require(face.kind == Kind::tri || face.kind == Kind::quad, "a face is neither triangle nor quad");
       for (std::size_t k = 0; k < static_cast<std::size_t>(face.kind); ++k) {
-        require(face.vertex[k] < used[side].size(), "a face has a vertex that does not exist");
-        used[side][face.vertex[k]] = true;
-      }
-    }
-    for (std::size_t v = 0; v < used[side].size(); ++v) {
-      for (int i = 0; used[side][v] && i < 3; ++i) coordinate.add(mesh[side]->vertices[v][i]);
-    }
-    for (int row = 0; row < 3; ++row) {
-      for (int i = 0; i < 3; ++i) entry.add((*pose[side])(row, i));
-      shift.add((*pose[side])(row, 3));
-    }
-  }
-  shift.add(length);
-  // Products are multiples of 2^of_products, translations of 2^shift.exponent(); all are made such of the lesser one.
-  const int of_products = coordinate.exponent() + entry.exponent();
-  const unsigned to_products = static_cast<unsigned>(std::max(0, of_products - shift.exponent()));
-  const unsigned to_shift = static_cast<unsigned>(std::max(0, shift.exponent() - of_products));
-  Placed result;
-  result.length = shift.whole(length) << to_shift;
-  std::array<std::vector<Point>, 2>& points = result.points;
-  for (const std::size_t side : {0U, 1U}) {
-    std::array<std::array<Int, 4>, 3> map;
-    for (std::size_t row = 0; row < 3; ++row) {
-      const auto at = [&](int column) { return (*pose[side])(static_cast<int>(row), column); };
-      for (int i = 0; i < 3; ++i) map[row][static_cast<std::size_t>(i)] = entry.whole(at(i)) << to_products;
-      map[row][3] = shift.whole(at(3)) << to_shift;
-    }
-    points[side].resize(used[side].size());
-    for (std::size_t v = 0; v < used[side].size(); ++v) {
-      if (!used[side][v]) continue;
-      std::array<Int, 3> x;
-      for (int i = 0; i < 3; ++i) x[static_cast<std::size_t>(i)] = coordinate.whole(mesh[side]->vertices[v][i]);
-      for (std::size_t row = 0; row < 3; ++row) {
-        Int& sum = points[side][v][row];
-        sum = map[row][3];
-        for (std::size_t i = 0; i < 3; ++i) sum += map[row][i] * x[i];
+        const std::uint32_t v = face.vertex[k];
+        if (!placed[v]) points[side][v] = placement.posed(side, mesh[side]->vertices[v]);
+        placed[v] = true;
       }
     }
   }
-  return result;
+  return points;
+}
+inline std::array<std::vector<Point>, 2> posed_vertices(const std::array<const Mesh*, 2>& mesh,
+                                                        const std::array<const Pose*, 2>& pose) {
+  const CheckedMesh a(*mesh[0]), b(*mesh[1]);
+  return posed_vertices(Placement({&a, &b}, pose), mesh);
 }
 
 /// Reads integers of a certificate.
@@ -134,7 +136,12 @@ inline std::vector<Int> integers(const std::vector<Digits>& texts, std::size_t c
   return result;
 }
 
-inline Int dot(const std::vector<Int>& d, const Point& p) { return d[0] * p[0] + d[1] * p[1] + d[2] * p[2]; }
+/// Reads a direction.
+inline Point direction_of(const std::vector<Digits>& texts) {
+  const std::vector<Int> d = integers(texts, 3);
+  require(d[0] != 0 || d[1] != 0 || d[2] != 0, "the direction is 0");
+  return {d[0], d[1], d[2]};
+}
 
 }  // namespace cchip::certificate_check
 
