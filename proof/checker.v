@@ -15,12 +15,13 @@ Inductive reason :=
 | Touch (direction : triple Z)
 | Cross (e1 e2 e3 : edge).
 Inductive cell :=
-| Split (which : side) (at_ : Z)
+| Split (which : side) (at_ : option Z) (* none: in halves *)
 | Separated (direction : triple Z)
 | Shared (index_a index_b : Z) (weights_a weights_b : list Z) (why : reason).
 
 Record certificate := Certificate {
   claimed : claim;
+  halving : bool; (* the orders are those of trees, whose sets are cut in halves *)
   order_a : list Z;
   order_b : list Z;
   cells : list cell }.
@@ -47,12 +48,16 @@ Definition posed_z (p : triple (triple Z * Z)) (v : triple Z) : triple Z :=
 (** Coordinates of the mesh are multiplied by 2^-ev, those of the matrix by 2^-er. *)
 Definition whole_pose (ev er : Z) (p : pose) : triple (triple Z * Z) :=
   map3 (fun r => (map3 (whole er) (entries r), whole (ev + er) (shift r))) p.
-Fixpoint place (ev : Z) (p : triple (triple Z * Z)) (i : Z) (m : mesh) : list part :=
+Fixpoint place (ev : Z) (move : triple Z -> triple Z) (i : Z) (m : mesh) : list part :=
   match m with
   | [] => []
-  | f :: rest => Part i (number_in_file f) (map (fun v => posed_z p (map3 (whole ev) v)) (vertices f))
-                 :: place ev p (i + 1) rest
+  | f :: rest => Part i (number_in_file f) (map (fun v => move (map3 (whole ev) v)) (vertices f))
+                 :: place ev move (i + 1) rest
   end.
+(** Vertices are posed before the cells are read, or, if few of them are asked for, at the cells. *)
+Definition pose_early (late : bool) (p : triple (triple Z * Z)) (v : triple Z) : triple Z :=
+  if late then v else posed_z p v.
+Definition pose_late (late : bool) : triple (triple Z * Z) -> triple Z -> triple Z := pose_early (negb late).
 
 Definition numbers_of_mesh (m : mesh) : list number := flat_map (fun f => flat_map items (vertices f)) m.
 Definition matrix_of (p : pose) : list number := flat_map (fun r => items (entries r)) (items p).
@@ -177,50 +182,104 @@ Record entry := Entry { key_a : Z; key_b : Z; kind_of : kind }.
 Definition kind_of_reason (why : reason) : kind :=
   match why with Meet | Near => Meets | Touch _ => Touches | Cross _ _ _ => Crosses end.
 
-(** Parts at the places [from], [from] + 1, ... of the order. *)
-Record group := Group { from : Z; parts : list part }.
+(** * Sets of faces *)
+
+(** A node holds the number of its parts, and the least and the greatest coordinates of their corners. *)
+Inductive tree := Leaf (p : part) | Node (size : Z) (low high : triple Z) (first second : tree).
+(** Parts at the places [from], [from] + 1, ... of an order, or those of a tree. *)
+Inductive group := Places (from : Z) (members : list part) | Tree (t : tree).
+
+Fixpoint leaves (t : tree) : list part := match t with Leaf p => [p] | Node _ _ _ a b => leaves a ++ leaves b end.
+Definition parts (g : group) : list part := match g with Places _ ps => ps | Tree t => leaves t end.
+Definition only (g : group) : option part := match g with Places _ [p] | Tree (Leaf p) => Some p | _ => None end.
+
+Definition map_two (f : Z -> Z -> Z) (a b : triple Z) : triple Z := Triple (f (x a) (x b)) (f (y a) (y b)) (f (z a) (z b)).
+Definition bounds (t : tree) : triple Z * triple Z :=
+  match t with
+  | Leaf p => match corners p with
+              | [] => (Triple 0 0 0, Triple 0 0 0)
+              | v :: vs => (fold_left (map_two Z.min) vs v, fold_left (map_two Z.max) vs v)
+              end
+  | Node _ low high _ _ => (low, high)
+  end.
+Definition node (size : Z) (a b : tree) : tree :=
+  let (la, ha) := bounds a in let (lb, hb) := bounds b in Node size (map_two Z.min la lb) (map_two Z.max ha hb) a b.
+
+(** The tree of the first n parts, and the parts after them. *)
+Fixpoint grow (levels : nat) (n : Z) (ps : list part) : option (tree * list part) :=
+  match levels, ps with
+  | S levels, p :: rest =>
+    if n =? 1 then Some (Leaf p, rest)
+    else let half := Z.shiftl n (-1) in
+      match grow levels half ps with
+      | Some (a, rest) =>
+        match grow levels (n - half) rest with Some (b, rest) => Some (node n a b, rest) | None => None end
+      | None => None
+      end
+  | _, _ => None
+  end.
+
+Definition eight (low high : triple Z) : list (triple Z) :=
+  flat_map (fun u => flat_map (fun v => [Triple u v (z low); Triple u v (z high)]) [y low; y high]) [x low; x high].
+(** Points whose hull holds all corners of the parts. *)
+Definition outer (g : group) : list (triple Z) :=
+  match g with
+  | Tree (Node size low high _ _) => if 4 <? size then eight low high else flat_map corners (parts g)
+  | _ => flat_map corners (parts g)
+  end.
 
 (** The first n of a list, in reverse before [taken], and the rest. *)
 Fixpoint cut {T} (n : Z) (taken rest : list T) : list T * list T :=
   if n <=? 0 then (taken, rest)
   else match rest with [] => (taken, []) | a :: rest => cut (n - 1) (a :: taken) rest end.
 
-Definition halves (g : group) (at_ : Z) : option (group * group) :=
-  match cut (at_ - from g) [] (parts g) with
-  | (a :: first, b :: second) => Some (Group (from g) (rev_append (a :: first) []), Group at_ (b :: second))
-  | _ => None
-  end.
-
-(** What one cell leaves to prove, and the entries that it finds. *)
-Definition step (m : measure) (c : cell) (ga gb : group) : option (list (group * group) * list entry) :=
-  match c with
-  | Split SideA at_ =>
-    match halves ga at_ with Some (first, second) => Some ([(first, gb); (second, gb)], []) | None => None end
-  | Split SideB at_ =>
-    match halves gb at_ with Some (first, second) => Some ([(ga, first); (ga, second)], []) | None => None end
-  | Separated d =>
-    if separates m d (flat_map corners (parts ga)) (flat_map corners (parts gb)) then Some ([], []) else None
-  | Shared i j wa wb why =>
-    match parts ga, parts gb with
-    | [f], [g] =>
-      if (index f =? i) && (index g =? j) && reason_holds m why wa wb (corners f) (corners g)
-      then Some ([], [Entry (number_of f) (number_of g) (kind_of_reason why)]) else None
-    | _, _ => None
+Definition divide (g : group) (at_ : option Z) : option (group * group) :=
+  match g, at_ with
+  | Places from ps, Some at_ =>
+    match cut (at_ - from) [] ps with
+    | (a :: first, b :: second) => Some (Places from (rev_append (a :: first) []), Places at_ (b :: second))
+    | _ => None
     end
+  | Tree (Node _ _ _ a b), None => Some (Tree a, Tree b)
+  | _, _ => None
   end.
 
 Inductive outcome := Done (found : list entry) | Failed (from_cell : list cell).
 
-Fixpoint run (m : measure) (cs : list cell) (todo : list (group * group)) (found : list entry) : outcome :=
-  match cs, todo with
-  | [], [] => Done found
-  | c :: rest, (ga, gb) :: todo =>
-    match step m c ga gb with
-    | Some (more, entries) => run m rest (more ++ todo) (entries ++ found)
-    | None => Failed cs
-    end
-  | _, _ => Failed cs
-  end.
+Section Cells.
+  (** How corners are posed that are not yet. *)
+  Variables (m : measure) (move_a move_b : triple Z -> triple Z).
+
+  (** What one cell leaves to prove, and the entries that it finds. *)
+  Definition step (c : cell) (ga gb : group) : option (list (group * group) * list entry) :=
+    match c with
+    | Split SideA at_ =>
+      match divide ga at_ with Some (first, second) => Some ([(first, gb); (second, gb)], []) | None => None end
+    | Split SideB at_ =>
+      match divide gb at_ with Some (first, second) => Some ([(ga, first); (ga, second)], []) | None => None end
+    | Separated d =>
+      if separates m d (map move_a (outer ga)) (map move_b (outer gb)) then Some ([], []) else None
+    | Shared i j wa wb why =>
+      match only ga, only gb with
+      | Some f, Some g =>
+        if (index f =? i) && (index g =? j) &&
+           reason_holds m why wa wb (map move_a (corners f)) (map move_b (corners g))
+        then Some ([], [Entry (number_of f) (number_of g) (kind_of_reason why)]) else None
+      | _, _ => None
+      end
+    end.
+
+  Fixpoint run (cs : list cell) (todo : list (group * group)) (found : list entry) : outcome :=
+    match cs, todo with
+    | [], [] => Done found
+    | c :: rest, (ga, gb) :: todo =>
+      match step c ga gb with
+      | Some (more, entries) => run rest (more ++ todo) (entries ++ found)
+      | None => Failed cs
+      end
+    | _, _ => Failed cs
+    end.
+End Cells.
 
 (** * Orders *)
 
@@ -256,6 +315,19 @@ Definition ordered (order : list Z) (ps : list part) : option (list part) :=
   match ps with
   | [] => None
   | _ => if counts 0 places ps then Some (map snd (PartSort.sort (combine (map snd places) ps))) else None
+  end.
+
+(** All parts as a group; 2^40 at most in a tree. *)
+Definition group_of (in_halves : bool) (order : list Z) (ps : list part) : option group :=
+  match ordered order ps with
+  | None => None
+  | Some sorted =>
+    if in_halves then
+      match grow 41 (fold_left (fun n _ => n + 1) sorted 0) sorted with
+      | Some (t, []) => Some (Tree t)
+      | _ => None
+      end
+    else Some (Places 0 sorted)
   end.
 
 (** * The claim *)
@@ -345,17 +417,18 @@ Definition conclude (c : certificate) (o : outcome) : verdict :=
   | Done found => if claim_follows (claimed c) (pairs_of found) then Accepted else ClaimFault
   end.
 
-Definition check_parts (m : measure) (c : certificate) (pa pb : list part) : verdict :=
+Definition check_parts (m : measure) (move_a move_b : triple Z -> triple Z) (c : certificate) (pa pb : list part)
+  : verdict :=
   if all (claimed c) then
-    match ordered (order_a c) pa, ordered (order_b c) pb with
-    | Some sa, Some sb => conclude c (run m (cells c) [(Group 0 sa, Group 0 sb)] [])
+    match group_of (halving c) (order_a c) pa, group_of (halving c) (order_b c) pb with
+    | Some ga, Some gb => conclude c (run m move_a move_b (cells c) [(ga, gb)] [])
     | _, _ => OrderFault
     end
   else
     match order_a c, order_b c, cells c, contacts (claimed c) with
     | [], [], [Shared i j _ _ _], [_] =>
       match find (fun f => index f =? i) pa, find (fun g => index g =? j) pb with
-      | Some f, Some g => conclude c (run m (cells c) [(Group 0 [f], Group 0 [g])] [])
+      | Some f, Some g => conclude c (run m move_a move_b (cells c) [(Places 0 [f], Places 0 [g])] [])
       | _, _ => CellsFault (cells c)
       end
     | _, _, _, _ => OrderFault
@@ -364,7 +437,10 @@ Definition check_parts (m : measure) (c : certificate) (pa pb : list part) : ver
 Definition check (s : scene) (c : certificate) : verdict :=
   let k := counted (claimed c) in
   let (ev, er) := exponents s k in
+  let late := halving c || negb (all (claimed c)) in
+  let wa := whole_pose ev er (pose_a s) in
+  let wb := whole_pose ev er (pose_b s) in
   if negb (fits_scene ev er s && fits_criterion (ev + er) k) then ScaleFault
   else if negb (forallb is_shape (mesh_a s) && forallb is_shape (mesh_b s)) then ShapeFault
-  else check_parts (measure_of (ev + er) k) c (place ev (whole_pose ev er (pose_a s)) 0 (mesh_a s))
-                   (place ev (whole_pose ev er (pose_b s)) 0 (mesh_b s)).
+  else check_parts (measure_of (ev + er) k) (pose_late late wa) (pose_late late wb) c
+                   (place ev (pose_early late wa) 0 (mesh_a s)) (place ev (pose_early late wb) 0 (mesh_b s)).

@@ -3,8 +3,9 @@
 open Reader
 
 let usage = "usage: cchip-checked A B FILE [--pose tx,ty,tz | --pose-matrix N,N,... | --poses CSV] [--single]\n\
+             \                           [--tree-a TREE --tree-b TREE]\n\
              \       cchip-checked --batch LIST\n\
-             Lines of LIST: A, B, FILE and the twelve numbers of --pose-matrix, with tabs between them; prints a verdict for each.\n\
+             Lines of LIST: A, B, FILE, the twelve numbers of --pose-matrix and, if there are any, two trees, with tabs between them; prints a verdict for each.\n\
              Exit codes: 0 all accepted, 1 a certificate is refused, 2 a file or the command line cannot be read"
 
 let reason total (verdict : Checked.verdict) = match verdict with
@@ -15,14 +16,25 @@ let reason total (verdict : Checked.verdict) = match verdict with
   | ClaimFault -> Some "claim: it does not follow from the cells"
   | CellsFault rest -> Some (Printf.sprintf "cell %d: it does not hold, or cells are missing" (total - List.length rest))
 
+(* The certificate with the orders of the trees that it cites, or why it is refused. *)
+let with_trees a b trees read = match read.trees, trees with
+  | None, _ -> Ok read.certificate
+  | Some _, None -> unreadable "the certificate cites trees: give them with --tree-a and --tree-b"
+  | Some hashes, Some (of_a, of_b) ->
+    if (of_a.of_mesh, of_b.of_mesh) <> (a.hash, b.hash) then Error "cell 0: a tree is of another mesh"
+    else if hashes <> (of_a.tree_hash, of_b.tree_hash) then Error "cell 0: the certificate cites other trees"
+    else Ok { read.certificate with order_a = of_a.faces_in_order; order_b = of_b.faces_in_order }
+
 (* Nothing, or why the certificate is refused. *)
-let check a b pose read =
+let check a b trees pose read =
   if read.fault <> None then Option.map (fun why -> "claim: " ^ why) read.fault
   else if read.mesh_hashes <> (a.hash, b.hash) then Some "cell 0: the certificate is of other meshes"
   else if read.poses_hash <> hash_poses identity pose then Some "cell 0: the certificate is of other poses"
-  else
+  else match with_trees a b trees read with
+  | Error why -> Some why
+  | Ok certificate ->
     let scene = { Checked.mesh_a = a.faces; pose_a = to_pose identity; mesh_b = b.faces; pose_b = to_pose pose } in
-    reason (List.length read.certificate.cells) (Checked.check scene read.certificate)
+    reason (List.length certificate.cells) (Checked.check scene certificate)
 
 let in_words read =
   let c = read.certificate.claimed in
@@ -42,11 +54,12 @@ let in_words read =
     | _, l -> let n = List.length l in Printf.sprintf "%d contact%s%s and no others" n (if n = 1 then "" else "s") what in
   contacts ^ relation c.relation_of_meshes
 
-let run a b file poses ~numbered ~single =
+let run a b trees file poses ~numbered ~single =
   let checked = ref 0 and refused = ref 0 in
   let poses = poses () in
   let a = read_mesh ~single a in
   let b = read_mesh ~single b in
+  let trees = Option.map (fun (of_a, of_b) -> (read_tree of_a, read_tree of_b)) trees in
   let wrong_number which =
     unreadable "%s: it holds %s certificates than there are poses, %d" file which !checked in
   let next lines =
@@ -56,7 +69,7 @@ let run a b file poses ~numbered ~single =
     | Some (read, rest) ->
       incr checked;
       if numbered then Printf.printf "certificate %d " !checked;
-      (match check a b pose read with
+      (match check a b trees pose read with
        | None -> Printf.printf "accepted: %s\n" (in_words read)
        | Some why -> incr refused; Printf.printf "refused: %s\n" why);
       rest in
@@ -71,17 +84,19 @@ let batch list =
     | p, Some mesh when p = path -> mesh
     | _ -> let mesh = read_mesh path in cache := (path, Some mesh); mesh in
   let line text = match String.split_on_char '\t' text with
-    | [ a; b; file; pose ] ->
+    | a :: b :: file :: pose :: ([] | [ _; _ ] as trees) ->
       (try
          let a = mesh last a in
          let b = mesh other b in
          let pose = pose_of_matrix pose in
+         let trees = match trees with [ of_a; of_b ] -> Some (read_tree of_a, read_tree of_b) | _ -> None in
          let rec all n lines = match next_certificate lines with
            | None -> if n = 0 then "malformed: no certificate" else "accepted"
-           | Some (read, rest) -> (match check a b pose read with None -> all (n + 1) rest | Some why -> "refused: " ^ why) in
+           | Some (read, rest) ->
+             (match check a b trees pose read with None -> all (n + 1) rest | Some why -> "refused: " ^ why) in
          all 0 (lines_of (read_file file))
        with Unreadable what | Json.Malformed what -> "malformed: " ^ what)
-    | _ -> unreadable "%s: a line is not A, B, FILE and a pose with tabs between them" list in
+    | _ -> unreadable "%s: a line is not A, B, FILE, a pose and at most two trees with tabs between them" list in
   List.iter (fun text -> print_endline (line text)) (lines_of (read_file list));
   0
 
@@ -98,15 +113,19 @@ let rec options values = function
 let main arguments =
   let values = List.rev (options [] arguments) in
   let named name = List.filter_map (fun (n, v) -> if n = name then Some v else None) values in
-  List.iter (fun (n, _) -> if not (List.mem n [ ""; "--single"; "--pose"; "--pose-matrix"; "--poses"; "--batch" ])
+  List.iter (fun (n, _) -> if not (List.mem n [ ""; "--single"; "--pose"; "--pose-matrix"; "--poses"; "--batch"; "--tree-a"; "--tree-b" ])
               then unreadable "%s: no such option\n%s" n usage) values;
   let single = named "--single" <> [] in
+  let trees = match named "--tree-a", named "--tree-b" with
+    | [], [] -> None
+    | [ a ], [ b ] -> Some (a, b)
+    | _ -> unreadable "write --tree-a and --tree-b, each once\n%s" usage in
   match named "", named "--batch", named "--pose", named "--pose-matrix", named "--poses" with
-  | [], [ list ], [], [], [] when not single -> batch list
-  | [ a; b; file ], [], [], [], [] -> run a b file (fun () -> [ identity ]) ~numbered:false ~single
-  | [ a; b; file ], [], [ p ], [], [] -> run a b file (fun () -> [ pose_of_option p ]) ~numbered:false ~single
-  | [ a; b; file ], [], [], [ p ], [] -> run a b file (fun () -> [ pose_of_matrix p ]) ~numbered:false ~single
-  | [ a; b; file ], [], [], [], [ p ] -> run a b file (fun () -> poses_of_csv p) ~numbered:true ~single
+  | [], [ list ], [], [], [] when not single && trees = None -> batch list
+  | [ a; b; file ], [], [], [], [] -> run a b trees file (fun () -> [ identity ]) ~numbered:false ~single
+  | [ a; b; file ], [], [ p ], [], [] -> run a b trees file (fun () -> [ pose_of_option p ]) ~numbered:false ~single
+  | [ a; b; file ], [], [], [ p ], [] -> run a b trees file (fun () -> [ pose_of_matrix p ]) ~numbered:false ~single
+  | [ a; b; file ], [], [], [], [ p ] -> run a b trees file (fun () -> poses_of_csv p) ~numbered:true ~single
   | _ -> unreadable "%s" usage
 
 let () =
