@@ -19,6 +19,7 @@ import check  # noqa: E402
 OCTAHEDRON = ([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]],
               [[i, (i + 1) % 4, top] for top in (4, 5) for i in range(4)])
 TWO = ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [5, 0, 0], [6, 0, 0], [5, 1, 0]], [[0, 1, 2], [3, 4, 5]])
+THREE = ([*TWO[0], [10, 0, 0], [11, 0, 0], [10, 1, 0]], [*TWO[1], [6, 7, 8]])
 TURNED = [1, -1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0]  # the box of an octahedron reaches -2 along x, its vertices -1
 
 
@@ -37,8 +38,8 @@ def point(kind, a, b, **more):
 A, B = {"cell": "split_a"}, {"cell": "split_b"}
 DIAGONAL = separated(1, 1, 1)
 HALVES = [A, B, DIAGONAL, DIAGONAL, B, DIAGONAL, DIAGONAL]
-FAR = separated(1, 0, 0)
-PAIRS = [A, B, point("meet", 0, 0), FAR, B, separated(-1, 0, 0), point("meet", 1, 1)]
+FAR, BACK = separated(1, 0, 0), separated(-1, 0, 0)
+PAIRS = [A, B, point("meet", 0, 0), FAR, B, BACK, point("meet", 1, 1)]
 NEAR = [point("near", *c["faces"]) if "faces" in c else c for c in PAIRS]
 BOTH = [[0, 0, None], [1, 1, None]]
 
@@ -67,6 +68,7 @@ CASES = [
     ("along, back", OCTAHEDRON, at(2, 0, 0), [FAR], {"along": [-1, 9, 0]}, "refused: cell 0: it does not hold"),
     ("pairs", TWO, at(0, 0, 0), PAIRS, {"contacts": BOTH}, "accepted"),
     ("pairs within", TWO, at(0, 0, 1), NEAR, {"contacts": BOTH, "within": 1}, "accepted"),
+    ("three faces are one and two", THREE, at(3.5, 0, 0), [A, FAR, B, BACK, A, FAR, B, BACK, FAR], {}, "accepted"),
     ("a contact is left out", TWO, at(0, 0, 0), PAIRS, {"contacts": BOTH[1:]}, "refused: claim: it does not follow"),
     ("a point of two faces", TWO, at(0, 0, 0), [A, point("meet", 0, 0), *PAIRS[4:]], {"contacts": BOTH},
      "refused: cell 1: it does not hold"),

@@ -129,6 +129,8 @@ let main arguments =
   | _ -> unreadable "%s" usage
 
 let () =
+  (* Meshes live until the end, so a large heap for young values saves a third of the time. *)
+  Gc.set { (Gc.get ()) with minor_heap_size = 1 lsl 22; space_overhead = 200 };
   exit
     (try main (List.tl (Array.to_list Sys.argv)) with
      | Unreadable what -> flush stdout; prerr_endline ("cchip-checked: " ^ what); 2
