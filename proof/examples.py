@@ -18,6 +18,7 @@ import check  # noqa: E402
 # An octahedron of eight faces: along (1, 1, 1) it ends at 1 and its box at 3. Faces 0 to 3 are its upper half.
 OCTAHEDRON = ([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]],
               [[i, (i + 1) % 4, top] for top in (4, 5) for i in range(4)])
+FIVE = (OCTAHEDRON[0], OCTAHEDRON[1][:5])
 TWO = ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [5, 0, 0], [6, 0, 0], [5, 1, 0]], [[0, 1, 2], [3, 4, 5]])
 THREE = ([*TWO[0], [10, 0, 0], [11, 0, 0], [10, 1, 0]], [*TWO[1], [6, 7, 8]])
 TURNED = [1, -1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0]  # the box of an octahedron reaches -2 along x, its vertices -1
@@ -54,6 +55,7 @@ CASES = [
     ("boxes that touch", OCTAHEDRON, at(2, 0, 0), [FAR], {}, "refused: cell 0: it does not hold"),
     ("boxes that overlap", OCTAHEDRON, at(.9, .9, .9), [DIAGONAL], {}, "refused: cell 0: it does not hold"),
     ("four faces have no box", OCTAHEDRON, at(.9, .9, .9), HALVES, {}, "accepted"),
+    ("five faces have a box", FIVE, at(.9, .9, .9), [DIAGONAL], {}, "refused: cell 0: it does not hold"),
     ("the upper half first", OCTAHEDRON, at(0, 0, 1.5), [A, separated(0, 0, 1)], {}, "refused: cell 1: it does not hold"),
     ("the lower half first", OCTAHEDRON, at(0, 0, 1.5), [A, separated(0, 0, 1)], {"order": [4, 5, 6, 7, 0, 1, 2, 3]},
      "refused: cell 2: it does not hold"),
