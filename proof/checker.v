@@ -48,16 +48,16 @@ Definition posed_z (p : triple (triple Z * Z)) (v : triple Z) : triple Z :=
 (** Coordinates of the mesh are multiplied by 2^-ev, those of the matrix by 2^-er. *)
 Definition whole_pose (ev er : Z) (p : pose) : triple (triple Z * Z) :=
   map3 (fun r => (map3 (whole er) (entries r), whole (ev + er) (shift r))) p.
-Fixpoint place (ev : Z) (move : triple Z -> triple Z) (i : Z) (m : mesh) : list part :=
+Fixpoint place (ev i : Z) (m : mesh) : list part :=
   match m with
   | [] => []
-  | f :: rest => Part i (number_in_file f) (map (fun v => move (map3 (whole ev) v)) (vertices f))
-                 :: place ev move (i + 1) rest
+  | f :: rest => Part i (number_in_file f) (map (map3 (whole ev)) (vertices f)) :: place ev (i + 1) rest
   end.
-(** Vertices are posed before the cells are read, or, if few of them are asked for, at the cells. *)
-Definition pose_early (late : bool) (p : triple (triple Z * Z)) (v : triple Z) : triple Z :=
-  if late then v else posed_z p v.
-Definition pose_late (late : bool) : triple (triple Z * Z) -> triple Z -> triple Z := pose_early (negb late).
+(** Corners are posed before the cells are read, or, if few of them are asked for, [late], at the cells. *)
+Definition posed_early (late : bool) (p : triple (triple Z * Z)) (ps : list part) : list part :=
+  if late then ps else map (fun f => Part (index f) (number_of f) (map (posed_z p) (corners f))) ps.
+Definition posed_late (late : bool) (p : triple (triple Z * Z)) (v : triple Z) : triple Z :=
+  if late then posed_z p v else v.
 
 Definition numbers_of_mesh (m : mesh) : list number := flat_map (fun f => flat_map items (vertices f)) m.
 Definition matrix_of (p : pose) : list number := flat_map (fun r => items (entries r)) (items p).
@@ -68,19 +68,17 @@ Definition least_of_two (a b : option Z) : option Z :=
 
 (** Numbers of the scale of the vertices in their poses. *)
 Definition distances_of (k : criterion) : list number := match k with Within w | Below w => [w] | _ => [] end.
-Definition exponents (s : scene) (k : criterion) : Z * Z :=
-  let ev := or_zero (least_of_two (least_exponent (numbers_of_mesh (mesh_a s)))
-                                  (least_exponent (numbers_of_mesh (mesh_b s)))) in
-  let er := least_exponent (matrix_of (pose_a s) ++ matrix_of (pose_b s)) in
-  let et := least_exponent (shifts_of (pose_a s) ++ shifts_of (pose_b s) ++ distances_of k) in
-  (ev, or_zero (least_of_two er (match et with None => None | Some e => Some (e - ev) end))).
+Definition exponent_of_meshes (a b : mesh) : Z :=
+  or_zero (least_of_two (least_exponent (numbers_of_mesh a)) (least_exponent (numbers_of_mesh b))).
+Definition exponent_of_rows (ev : Z) (pa pb : pose) (k : criterion) : Z :=
+  let er := least_exponent (matrix_of pa ++ matrix_of pb) in
+  let et := least_exponent (shifts_of pa ++ shifts_of pb ++ distances_of k) in
+  or_zero (least_of_two er (match et with None => None | Some e => Some (e - ev) end)).
 
 Definition fits_mesh (ev : Z) (m : mesh) : bool :=
   forallb (fun f => forallb (fun v => forallb (fits ev) (items v)) (vertices f)) m.
 Definition fits_pose (ev er : Z) (p : pose) : bool :=
   forallb (fun r => forallb (fits er) (items (entries r)) && fits (ev + er) (shift r)) (items p).
-Definition fits_scene (ev er : Z) (s : scene) : bool :=
-  fits_mesh ev (mesh_a s) && fits_mesh ev (mesh_b s) && fits_pose ev er (pose_a s) && fits_pose ev er (pose_b s).
 
 (** [criterion] in integers: in the scale of the vertices in their poses; a translation may have any scale. *)
 Inductive measure := Sharing | Distance (w : Z) (strict : bool) | Moving (t : triple Z).
@@ -317,18 +315,17 @@ Definition ordered (order : list Z) (ps : list part) : option (list part) :=
   | _ => if counts 0 places ps then Some (map snd (PartSort.sort (combine (map snd places) ps))) else None
   end.
 
-(** All parts as a group; 2^40 at most in a tree. *)
-Definition group_of (in_halves : bool) (order : list Z) (ps : list part) : option group :=
+Definition listed (order : list Z) (ps : list part) : option group :=
+  match ordered order ps with Some sorted => Some (Places 0 sorted) | None => None end.
+(** At most 2^40 parts. *)
+Definition grown (order : list Z) (ps : list part) : option group :=
   match ordered order ps with
   | None => None
   | Some sorted =>
-    if in_halves then
-      match grow 41 (fold_left (fun n _ => n + 1) sorted 0) sorted with
-      | Some (t, []) => Some (Tree t)
-      | _ => None
-      end
-    else Some (Places 0 sorted)
+    match grow 41 (fold_left (fun n _ => n + 1) sorted 0) sorted with Some (t, []) => Some (Tree t) | _ => None end
   end.
+Definition both (a b : option group) : option (group * group) :=
+  match a, b with Some a, Some b => Some (a, b) | _, _ => None end.
 
 (** * The claim *)
 
@@ -417,12 +414,21 @@ Definition conclude (c : certificate) (o : outcome) : verdict :=
   | Done found => if claim_follows (claimed c) (pairs_of found) then Accepted else ClaimFault
   end.
 
-Definition check_parts (m : measure) (move_a move_b : triple Z -> triple Z) (c : certificate) (pa pb : list part)
-  : verdict :=
+(** What is made once for two meshes, in all poses: their scale, whether it fits and the faces are of the right shape,
+    the parts; and their trees, if a certificate cites them. *)
+Record prepared := Prepared { scale : Z; is_scaled : bool; is_shaped : bool; parts_a : list part; parts_b : list part }.
+Definition prepare (a b : mesh) : prepared :=
+  let ev := exponent_of_meshes a b in
+  Prepared ev (fits_mesh ev a && fits_mesh ev b) (forallb is_shape a && forallb is_shape b) (place ev 0 a) (place ev 0 b).
+Definition trees_of (p : prepared) (order_a order_b : list Z) : option (group * group) :=
+  both (grown order_a (parts_a p)) (grown order_b (parts_b p)).
+
+Definition check_parts (m : measure) (move_a move_b : triple Z -> triple Z) (trees : option (group * group))
+    (c : certificate) (pa pb : list part) : verdict :=
   if all (claimed c) then
-    match group_of (halving c) (order_a c) pa, group_of (halving c) (order_b c) pb with
-    | Some ga, Some gb => conclude c (run m move_a move_b (cells c) [(ga, gb)] [])
-    | _, _ => OrderFault
+    match (if halving c then trees else both (listed (order_a c) pa) (listed (order_b c) pb)) with
+    | Some sets => conclude c (run m move_a move_b (cells c) [sets] [])
+    | None => OrderFault
     end
   else
     match order_a c, order_b c, cells c, contacts (claimed c) with
@@ -434,13 +440,18 @@ Definition check_parts (m : measure) (move_a move_b : triple Z -> triple Z) (c :
     | _, _, _, _ => OrderFault
     end.
 
-Definition check (s : scene) (c : certificate) : verdict :=
+Definition check_prepared (p : prepared) (trees : option (group * group)) (pa pb : pose) (c : certificate) : verdict :=
   let k := counted (claimed c) in
-  let (ev, er) := exponents s k in
+  let ev := scale p in
+  let er := exponent_of_rows ev pa pb k in
   let late := halving c || negb (all (claimed c)) in
-  let wa := whole_pose ev er (pose_a s) in
-  let wb := whole_pose ev er (pose_b s) in
-  if negb (fits_scene ev er s && fits_criterion (ev + er) k) then ScaleFault
-  else if negb (forallb is_shape (mesh_a s) && forallb is_shape (mesh_b s)) then ShapeFault
-  else check_parts (measure_of (ev + er) k) (pose_late late wa) (pose_late late wb) c
-                   (place ev (pose_early late wa) 0 (mesh_a s)) (place ev (pose_early late wb) 0 (mesh_b s)).
+  let wa := whole_pose ev er pa in
+  let wb := whole_pose ev er pb in
+  if negb (is_scaled p && fits_pose ev er pa && fits_pose ev er pb && fits_criterion (ev + er) k) then ScaleFault
+  else if negb (is_shaped p) then ShapeFault
+  else check_parts (measure_of (ev + er) k) (posed_late late wa) (posed_late late wb) trees c
+                   (posed_early late wa (parts_a p)) (posed_early late wb (parts_b p)).
+
+Definition check (s : scene) (c : certificate) : verdict :=
+  let p := prepare (mesh_a s) (mesh_b s) in
+  check_prepared p (if halving c then trees_of p (order_a c) (order_b c) else None) (pose_a s) (pose_b s) c.

@@ -16,25 +16,37 @@ let reason total (verdict : Checked.verdict) = match verdict with
   | ClaimFault -> Some "claim: it does not follow from the cells"
   | CellsFault rest -> Some (Printf.sprintf "cell %d: it does not hold, or cells are missing" (total - List.length rest))
 
-(* The certificate with the orders of the trees that it cites, or why it is refused. *)
-let with_trees a b trees read = match read.trees, trees with
-  | None, _ -> Ok read.certificate
+(* Two meshes, and what is made once for all their certificates; with trees, if these are given. *)
+type pair =
+  { a : mesh_read; b : mesh_read; prepared : Checked.prepared Lazy.t;
+    given : (tree_read * tree_read * (Checked.group * Checked.group) option Lazy.t) option }
+
+let pair a b trees =
+  let prepared = lazy (Checked.prepare a.faces b.faces) in
+  let read (of_a, of_b) =
+    let of_a = read_tree of_a and of_b = read_tree of_b in
+    (of_a, of_b, lazy (Checked.trees_of (Lazy.force prepared) of_a.faces_in_order of_b.faces_in_order)) in
+  { a; b; prepared; given = Option.map read trees }
+
+(* The trees that the certificate cites, if it cites any, or why it is refused. *)
+let cited pair read = match read.trees, pair.given with
+  | None, _ -> Ok None
   | Some _, None -> unreadable "the certificate cites trees: give them with --tree-a and --tree-b"
-  | Some hashes, Some (of_a, of_b) ->
-    if (of_a.of_mesh, of_b.of_mesh) <> (a.hash, b.hash) then Error "cell 0: a tree is of another mesh"
+  | Some hashes, Some (of_a, of_b, trees) ->
+    if (of_a.of_mesh, of_b.of_mesh) <> (pair.a.hash, pair.b.hash) then Error "cell 0: a tree is of another mesh"
     else if hashes <> (of_a.tree_hash, of_b.tree_hash) then Error "cell 0: the certificate cites other trees"
-    else Ok { read.certificate with order_a = of_a.faces_in_order; order_b = of_b.faces_in_order }
+    else Ok (Lazy.force trees)
 
 (* Nothing, or why the certificate is refused. *)
-let check a b trees pose read =
+let check pair pose read =
   if read.fault <> None then Option.map (fun why -> "claim: " ^ why) read.fault
-  else if read.mesh_hashes <> (a.hash, b.hash) then Some "cell 0: the certificate is of other meshes"
+  else if read.mesh_hashes <> (pair.a.hash, pair.b.hash) then Some "cell 0: the certificate is of other meshes"
   else if read.poses_hash <> hash_poses identity pose then Some "cell 0: the certificate is of other poses"
-  else match with_trees a b trees read with
-  | Error why -> Some why
-  | Ok certificate ->
-    let scene = { Checked.mesh_a = a.faces; pose_a = to_pose identity; mesh_b = b.faces; pose_b = to_pose pose } in
-    reason (List.length certificate.cells) (Checked.check scene certificate)
+  else match cited pair read with
+    | Error why -> Some why
+    | Ok trees ->
+      reason (List.length read.certificate.cells)
+        (Checked.check_prepared (Lazy.force pair.prepared) trees (to_pose identity) (to_pose pose) read.certificate)
 
 let in_words read =
   let c = read.certificate.claimed in
@@ -58,8 +70,7 @@ let run a b trees file poses ~numbered ~single =
   let checked = ref 0 and refused = ref 0 in
   let poses = poses () in
   let a = read_mesh ~single a in
-  let b = read_mesh ~single b in
-  let trees = Option.map (fun (of_a, of_b) -> (read_tree of_a, read_tree of_b)) trees in
+  let pair = pair a (read_mesh ~single b) trees in
   let wrong_number which =
     unreadable "%s: it holds %s certificates than there are poses, %d" file which !checked in
   let next lines =
@@ -69,7 +80,7 @@ let run a b trees file poses ~numbered ~single =
     | Some (read, rest) ->
       incr checked;
       if numbered then Printf.printf "certificate %d " !checked;
-      (match check a b trees pose read with
+      (match check pair pose read with
        | None -> Printf.printf "accepted: %s\n" (in_words read)
        | Some why -> incr refused; Printf.printf "refused: %s\n" why);
       rest in
@@ -87,13 +98,12 @@ let batch list =
     | a :: b :: file :: pose :: ([] | [ _; _ ] as trees) ->
       (try
          let a = mesh last a in
-         let b = mesh other b in
+         let pair = pair a (mesh other b) (match trees with [ of_a; of_b ] -> Some (of_a, of_b) | _ -> None) in
          let pose = pose_of_matrix pose in
-         let trees = match trees with [ of_a; of_b ] -> Some (read_tree of_a, read_tree of_b) | _ -> None in
          let rec all n lines = match next_certificate lines with
            | None -> if n = 0 then "malformed: no certificate" else "accepted"
            | Some (read, rest) ->
-             (match check a b trees pose read with None -> all (n + 1) rest | Some why -> "refused: " ^ why) in
+             (match check pair pose read with None -> all (n + 1) rest | Some why -> "refused: " ^ why) in
          all 0 (lines_of (read_file file))
        with Unreadable what | Json.Malformed what -> "malformed: " ^ what)
     | _ -> unreadable "%s: a line is not A, B, FILE, a pose and at most two trees with tabs between them" list in

@@ -188,15 +188,15 @@ Proof. intros (eps & E & H). apply H. unfold shorter; cbn. repeat split; lra. Qe
 
 Definition affine (move : triple Z -> triple Z) : Prop :=
   forall d, exists e c, forall v, dot d (move v) = (dot e v + c)%Z.
-Lemma pose_late_affine late p : affine (pose_late late p).
+Lemma posed_late_affine late p : affine (posed_late late p).
 Proof.
   intros d. destruct late.
   - exists (Triple (x d * x (fst (x p)) + y d * x (fst (y p)) + z d * x (fst (z p)))
                    (x d * y (fst (x p)) + y d * y (fst (y p)) + z d * y (fst (z p)))
                    (x d * z (fst (x p)) + y d * z (fst (y p)) + z d * z (fst (z p))))%Z.
     exists (x d * snd (x p) + y d * snd (y p) + z d * snd (z p))%Z.
-    intros v. unfold pose_late, pose_early, posed_z, coordinate_z, dot, map3; cbn [negb x y z]. ring.
-  - exists d, 0%Z. intros v. cbn [pose_late pose_early negb]. ring.
+    intros v. unfold posed_late, posed_z, coordinate_z, dot, map3; cbn [x y z]. ring.
+  - exists d, 0%Z. intros v. cbn [posed_late]. ring.
 Qed.
 
 Lemma spans_moved move ps vs : affine move -> (forall d, spans d ps vs) ->
@@ -418,15 +418,22 @@ Proof.
     apply (Permutation_in _ (Permutation_sym P)) in I. apply in_combine_r in I. auto.
 Qed.
 
-Lemma group_of_spec in_halves order ps g : group_of in_halves order ps = Some g ->
-  boxed_group g /\ forall f, In f ps <-> In f (parts g).
+(** The group holds the parts and no others. *)
+Definition all_of (ps : list part) (g : group) : Prop := boxed_group g /\ forall f, In f ps <-> In f (parts g).
+Lemma listed_spec order ps g : listed order ps = Some g -> all_of ps g.
 Proof.
-  unfold group_of. destruct (ordered order ps) as [sorted |] eqn:E; [| discriminate].
-  pose proof (ordered_spec _ _ _ E) as S. destruct in_halves.
-  - destruct (grow _ _ sorted) as [(t, [|]) |] eqn:G; [| discriminate | discriminate]. intros H. injection H as <-.
-    apply grow_spec in G. destruct G as (B & G). rewrite app_nil_r in G. cbn. rewrite <- G. auto.
-  - intros H. injection H as <-. cbn. auto.
+  unfold listed. destruct (ordered order ps) as [sorted |] eqn:E; [| discriminate]. intros H. injection H as <-.
+  split; [exact I | apply (ordered_spec _ _ _ E)].
 Qed.
+Lemma grown_spec order ps g : grown order ps = Some g -> all_of ps g.
+Proof.
+  unfold grown. destruct (ordered order ps) as [sorted |] eqn:E; [| discriminate].
+  destruct (grow _ _ sorted) as [(t, [|]) |] eqn:G; [| discriminate | discriminate]. intros H. injection H as <-.
+  apply grow_spec in G. destruct G as (B & G). rewrite app_nil_r in G. split; [exact B |].
+  cbn. rewrite <- G. apply (ordered_spec _ _ _ E).
+Qed.
+Lemma both_spec a b ga gb : both a b = Some (ga, gb) -> a = Some ga /\ b = Some gb.
+Proof. unfold both. destruct a, b; intros H; try discriminate. injection H as <- <-. auto. Qed.
 
 (** * Pairs of faces of the files *)
 
@@ -664,9 +671,14 @@ End Claim.
 
 (** * The checker *)
 
-Lemma place_spec ev move m : forall i, Forall2 (fun f part => number_of part = number_in_file f /\
-    corners part = map (fun v => move (map3 (whole ev) v)) (vertices f)) m (place ev move i m).
-Proof. induction m as [| f m IH]; intros i; cbn; constructor; cbn; auto. Qed.
+Lemma place_spec late ev p m : forall i, Forall2 (fun f part => number_of part = number_in_file f /\
+    map (posed_late late p) (corners part) = map (fun v => posed_z p (map3 (whole ev) v)) (vertices f))
+  m (posed_early late p (place ev i m)).
+Proof.
+  unfold posed_early, posed_late.
+  induction m as [| f m IH]; intros i; [destruct late; constructor |]. specialize (IH (i + 1)%Z).
+  destruct late; (constructor; [| exact IH]); cbn; rewrite ?map_id, ?map_map; auto.
+Qed.
 
 Lemma forall2_left {S T} (R : S -> T -> Prop) l m : Forall2 R l m -> forall a, In a l -> exists b, In b m /\ R a b.
 Proof. induction 1 as [| a b l m H F IH]; cbn; [tauto |]. intros c [<- | I]; [eauto |]. destruct (IH c I) as (d & J & K). eauto. Qed.
@@ -687,36 +699,35 @@ Proof.
   - apply coordinate_whole; auto. cbn. rewrite !andb_true_iff. tauto.
 Qed.
 
-Theorem accepted_holds s c : check s c = Accepted -> holds (claimed c) s.
+(** What is prepared may serve many poses and certificates; the trees may be of any orders. *)
+Theorem prepared_holds s c orders trees : let p := prepare (mesh_a s) (mesh_b s) in
+  trees = None \/ trees = trees_of p (fst orders) (snd orders) ->
+  check_prepared p trees (pose_a s) (pose_b s) c = Accepted -> holds (claimed c) s.
 Proof.
-  unfold check. cbv zeta. set (k := counted (claimed c)). set (late := halving c || negb (all (claimed c))).
-  destruct (exponents s k) as (ev, er).
-  destruct (fits_scene ev er s && fits_criterion (ev + er) k) eqn:F; [cbn [negb] | discriminate].
-  apply andb_true_iff in F. destruct F as (F & Fk). set (m := measure_of (ev + er) k) in *.
+  cbv zeta. intros Trees. unfold check_prepared. cbv zeta. set (k := counted (claimed c)). set (late := halving c || negb (all (claimed c))).
+  cbn [prepare scale is_scaled is_shaped parts_a parts_b]. set (ev := exponent_of_meshes (mesh_a s) (mesh_b s)).
+  set (er := exponent_of_rows ev (pose_a s) (pose_b s) k).
+  destruct (fits_mesh ev (mesh_a s) && fits_mesh ev (mesh_b s) && fits_pose ev er (pose_a s) && fits_pose ev er (pose_b s)
+            && fits_criterion (ev + er) k) eqn:F; [cbn [negb] | discriminate].
+  rewrite !andb_true_iff in F. destruct F as ((((Ma & Mb) & Pa) & Pb) & Fk). set (m := measure_of (ev + er) k) in *.
   destruct (forallb is_shape (mesh_a s) && forallb is_shape (mesh_b s)); [cbn [negb] | discriminate].
-  unfold fits_scene in F. rewrite !andb_true_iff in F. destruct F as (((Ma & Mb) & Pa) & Pb).
   set (wa := whole_pose ev er (pose_a s)). set (wb := whole_pose ev er (pose_b s)).
-  set (move_a := pose_late late wa). set (move_b := pose_late late wb).
-  set (pa := place _ _ _ (mesh_a s)). set (pb := place _ _ _ (mesh_b s)).
-  pose proof (place_spec ev (pose_early late wa) (mesh_a s) 0) as A. fold pa in A.
-  pose proof (place_spec ev (pose_early late wb) (mesh_b s) 0) as B. fold pb in B.
-  pose proof (pose_late_affine late wa) as Affine_a. pose proof (pose_late_affine late wb) as Affine_b.
+  set (move_a := posed_late late wa). set (move_b := posed_late late wb).
+  set (pa := posed_early late wa _). set (pb := posed_early late wb _).
+  pose proof (place_spec late ev wa (mesh_a s) 0) as A. fold pa in A. fold move_a in A.
+  pose proof (place_spec late ev wb (mesh_b s) 0) as B. fold pb in B. fold move_b in B.
+  pose proof (posed_late_affine late wa) as Affine_a. pose proof (posed_late_affine late wb) as Affine_b.
   fold move_a in Affine_a. fold move_b in Affine_b.
   pose proof (factor_positive ev er) as Positive.
   (* What is proved of parts holds for faces. *)
   assert (forall f g u v e, In f (mesh_a s) -> In g (mesh_b s) ->
-            number_of u = number_in_file f /\ corners u = map (fun v => pose_early late wa (map3 (whole ev) v)) (vertices f) ->
-            number_of v = number_in_file g /\ corners v = map (fun v => pose_early late wb (map3 (whole ev) v)) (vertices g) ->
+            number_of u = number_in_file f /\ map move_a (corners u) = map (fun v => posed_z wa (map3 (whole ev) v)) (vertices f) ->
+            number_of v = number_in_file g /\ map move_b (corners v) = map (fun v => posed_z wb (map3 (whole ev) v)) (vertices g) ->
             (about m move_a move_b e u v -> true_entry s (claimed c) e f g) /\
             (~ parts_related m move_a move_b u v -> ~ base k (placed (pose_a s) f) (placed (pose_b s) g))) as Transfer.
   { intros f g u v e If Ig (Nu & Cu) (Nv & Cv).
     pose proof (posed_similar ev er _ _ Ma Pa f If) as Sf. pose proof (posed_similar ev er _ _ Mb Pb g Ig) as Sg.
-    assert (forall p v, pose_late late p (pose_early late p v) = posed_z p v) as Once by (now destruct late).
-    assert (map move_a (corners u) = map (fun v => posed_z wa (map3 (whole ev) v)) (vertices f)) as Eu
-      by (rewrite Cu, map_map; apply map_ext; intros; apply Once).
-    assert (map move_b (corners v) = map (fun v => posed_z wb (map3 (whole ev) v)) (vertices g)) as Ev
-      by (rewrite Cv, map_map; apply map_ext; intros; apply Once).
-    fold wa in Sf. fold wb in Sg. rewrite <- Eu in Sf. rewrite <- Ev in Sg.
+    fold wa in Sf. fold wb in Sg. rewrite <- Cu in Sf. rewrite <- Cv in Sg.
     fold (shape move_a u) in Sf. fold (shape move_b v) in Sg.
     pose proof (related_similar ev er k _ _ _ _ Fk Sf Sg) as Same. split.
     - intros (Ka & Kb & M & X & T). unfold true_entry. rewrite <- Nu, <- Nv. split; [auto |]. split; [auto |].
@@ -733,9 +744,13 @@ Proof.
     destruct (forall2_right _ _ _ B v (Igs v V)) as (g & Ig & Rg).
     exists f, g. split; [auto |]. split; [auto |]. now apply (proj1 (Transfer f g u v e If Ig Rf Rg)). }
   unfold check_parts. destruct (all (claimed c)) eqn:All.
-  - destruct (group_of _ (order_a c) pa) as [ga |] eqn:Oa; [| discriminate].
-    destruct (group_of _ (order_b c) pb) as [gb |] eqn:Ob; [| discriminate].
-    destruct (group_of_spec _ _ _ _ Oa) as (Ba & Sa). destruct (group_of_spec _ _ _ _ Ob) as (Bb & Sb).
+  - destruct (if halving c then _ else _) as [(ga, gb) |] eqn:Sets; [| discriminate].
+    assert (all_of pa ga /\ all_of pb gb) as ((Ba & Sa) & (Bb & Sb)).
+    { unfold pa, pb, late. destruct (halving c); cbn [orb posed_early].
+      - destruct Trees as [-> | ->]; [discriminate |]. apply both_spec in Sets. destruct Sets as (Ga & Gb).
+        split; [apply (grown_spec _ _ _ Ga) | apply (grown_spec _ _ _ Gb)].
+      - apply both_spec in Sets. destruct Sets as (Ga & Gb).
+        split; [apply (listed_spec _ _ _ Ga) | apply (listed_spec _ _ _ Gb)]. }
     destruct (run _ _ _) as [found | rest] eqn:R; [| discriminate]. cbn.
     destruct (claim_follows _ _) eqn:Follows; [| discriminate]. intros _.
     destruct (run_spec m move_a move_b Affine_a Affine_b (parts ga) (parts gb) _ _ _ _ R) as (Sound & _ & Cover).
@@ -763,4 +778,9 @@ Proof.
       * apply (Entries found [u] [v]); auto; intros f [<- | []]; tauto.
       * congruence.
       * rewrite Contacts. auto.
+Qed.
+
+Theorem accepted_holds s c : check s c = Accepted -> holds (claimed c) s.
+Proof.
+  apply (prepared_holds s c (order_a c, order_b c)). destruct (halving c); auto.
 Qed.
