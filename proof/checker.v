@@ -15,12 +15,13 @@ Inductive reason :=
 | Touch (direction : triple Z)
 | Cross (e1 e2 e3 : edge).
 Inductive cell :=
-| Split (which : side) (at_ : Z)
+| Split (which : side) (at_ : option Z) (* none: in halves *)
 | Separated (direction : triple Z)
 | Shared (index_a index_b : Z) (weights_a weights_b : list Z) (why : reason).
 
 Record certificate := Certificate {
   claimed : claim;
+  halving : bool; (* the orders are those of trees, whose sets are cut in halves *)
   order_a : list Z;
   order_b : list Z;
   cells : list cell }.
@@ -47,12 +48,16 @@ Definition posed_z (p : triple (triple Z * Z)) (v : triple Z) : triple Z :=
 (** Coordinates of the mesh are multiplied by 2^-ev, those of the matrix by 2^-er. *)
 Definition whole_pose (ev er : Z) (p : pose) : triple (triple Z * Z) :=
   map3 (fun r => (map3 (whole er) (entries r), whole (ev + er) (shift r))) p.
-Fixpoint place (ev : Z) (p : triple (triple Z * Z)) (i : Z) (m : mesh) : list part :=
+Fixpoint place (ev i : Z) (m : mesh) : list part :=
   match m with
   | [] => []
-  | f :: rest => Part i (number_in_file f) (map (fun v => posed_z p (map3 (whole ev) v)) (vertices f))
-                 :: place ev p (i + 1) rest
+  | f :: rest => Part i (number_in_file f) (map (map3 (whole ev)) (vertices f)) :: place ev (i + 1) rest
   end.
+(** Corners are posed before the cells are read, or, if few of them are asked for, [late], at the cells. *)
+Definition posed_early (late : bool) (p : triple (triple Z * Z)) (ps : list part) : list part :=
+  if late then ps else map (fun f => Part (index f) (number_of f) (map (posed_z p) (corners f))) ps.
+Definition posed_late (late : bool) (p : triple (triple Z * Z)) (v : triple Z) : triple Z :=
+  if late then posed_z p v else v.
 
 Definition numbers_of_mesh (m : mesh) : list number := flat_map (fun f => flat_map items (vertices f)) m.
 Definition matrix_of (p : pose) : list number := flat_map (fun r => items (entries r)) (items p).
@@ -63,19 +68,17 @@ Definition least_of_two (a b : option Z) : option Z :=
 
 (** Numbers of the scale of the vertices in their poses. *)
 Definition distances_of (k : criterion) : list number := match k with Within w | Below w => [w] | _ => [] end.
-Definition exponents (s : scene) (k : criterion) : Z * Z :=
-  let ev := or_zero (least_of_two (least_exponent (numbers_of_mesh (mesh_a s)))
-                                  (least_exponent (numbers_of_mesh (mesh_b s)))) in
-  let er := least_exponent (matrix_of (pose_a s) ++ matrix_of (pose_b s)) in
-  let et := least_exponent (shifts_of (pose_a s) ++ shifts_of (pose_b s) ++ distances_of k) in
-  (ev, or_zero (least_of_two er (match et with None => None | Some e => Some (e - ev) end))).
+Definition exponent_of_meshes (a b : mesh) : Z :=
+  or_zero (least_of_two (least_exponent (numbers_of_mesh a)) (least_exponent (numbers_of_mesh b))).
+Definition exponent_of_rows (ev : Z) (pa pb : pose) (k : criterion) : Z :=
+  let er := least_exponent (matrix_of pa ++ matrix_of pb) in
+  let et := least_exponent (shifts_of pa ++ shifts_of pb ++ distances_of k) in
+  or_zero (least_of_two er (match et with None => None | Some e => Some (e - ev) end)).
 
 Definition fits_mesh (ev : Z) (m : mesh) : bool :=
   forallb (fun f => forallb (fun v => forallb (fits ev) (items v)) (vertices f)) m.
 Definition fits_pose (ev er : Z) (p : pose) : bool :=
   forallb (fun r => forallb (fits er) (items (entries r)) && fits (ev + er) (shift r)) (items p).
-Definition fits_scene (ev er : Z) (s : scene) : bool :=
-  fits_mesh ev (mesh_a s) && fits_mesh ev (mesh_b s) && fits_pose ev er (pose_a s) && fits_pose ev er (pose_b s).
 
 (** [criterion] in integers: in the scale of the vertices in their poses; a translation may have any scale. *)
 Inductive measure := Sharing | Distance (w : Z) (strict : bool) | Moving (t : triple Z).
@@ -177,50 +180,104 @@ Record entry := Entry { key_a : Z; key_b : Z; kind_of : kind }.
 Definition kind_of_reason (why : reason) : kind :=
   match why with Meet | Near => Meets | Touch _ => Touches | Cross _ _ _ => Crosses end.
 
-(** Parts at the places [from], [from] + 1, ... of the order. *)
-Record group := Group { from : Z; parts : list part }.
+(** * Sets of faces *)
+
+(** A node holds the number of its parts, and the least and the greatest coordinates of their corners. *)
+Inductive tree := Leaf (p : part) | Node (size : Z) (low high : triple Z) (first second : tree).
+(** Parts at the places [from], [from] + 1, ... of an order, or those of a tree. *)
+Inductive group := Places (from : Z) (members : list part) | Tree (t : tree).
+
+Fixpoint leaves (t : tree) : list part := match t with Leaf p => [p] | Node _ _ _ a b => leaves a ++ leaves b end.
+Definition parts (g : group) : list part := match g with Places _ ps => ps | Tree t => leaves t end.
+Definition only (g : group) : option part := match g with Places _ [p] | Tree (Leaf p) => Some p | _ => None end.
+
+Definition map_two (f : Z -> Z -> Z) (a b : triple Z) : triple Z := Triple (f (x a) (x b)) (f (y a) (y b)) (f (z a) (z b)).
+Definition bounds (t : tree) : triple Z * triple Z :=
+  match t with
+  | Leaf p => match corners p with
+              | [] => (Triple 0 0 0, Triple 0 0 0)
+              | v :: vs => (fold_left (map_two Z.min) vs v, fold_left (map_two Z.max) vs v)
+              end
+  | Node _ low high _ _ => (low, high)
+  end.
+Definition node (size : Z) (a b : tree) : tree :=
+  let (la, ha) := bounds a in let (lb, hb) := bounds b in Node size (map_two Z.min la lb) (map_two Z.max ha hb) a b.
+
+(** The tree of the first n parts, and the parts after them. *)
+Fixpoint grow (levels : nat) (n : Z) (ps : list part) : option (tree * list part) :=
+  match levels, ps with
+  | S levels, p :: rest =>
+    if n =? 1 then Some (Leaf p, rest)
+    else let half := Z.shiftl n (-1) in
+      match grow levels half ps with
+      | Some (a, rest) =>
+        match grow levels (n - half) rest with Some (b, rest) => Some (node n a b, rest) | None => None end
+      | None => None
+      end
+  | _, _ => None
+  end.
+
+Definition eight (low high : triple Z) : list (triple Z) :=
+  flat_map (fun u => flat_map (fun v => [Triple u v (z low); Triple u v (z high)]) [y low; y high]) [x low; x high].
+(** Points whose hull holds all corners of the parts. *)
+Definition outer (g : group) : list (triple Z) :=
+  match g with
+  | Tree (Node size low high _ _) => if 4 <? size then eight low high else flat_map corners (parts g)
+  | _ => flat_map corners (parts g)
+  end.
 
 (** The first n of a list, in reverse before [taken], and the rest. *)
 Fixpoint cut {T} (n : Z) (taken rest : list T) : list T * list T :=
   if n <=? 0 then (taken, rest)
   else match rest with [] => (taken, []) | a :: rest => cut (n - 1) (a :: taken) rest end.
 
-Definition halves (g : group) (at_ : Z) : option (group * group) :=
-  match cut (at_ - from g) [] (parts g) with
-  | (a :: first, b :: second) => Some (Group (from g) (rev_append (a :: first) []), Group at_ (b :: second))
-  | _ => None
-  end.
-
-(** What one cell leaves to prove, and the entries that it finds. *)
-Definition step (m : measure) (c : cell) (ga gb : group) : option (list (group * group) * list entry) :=
-  match c with
-  | Split SideA at_ =>
-    match halves ga at_ with Some (first, second) => Some ([(first, gb); (second, gb)], []) | None => None end
-  | Split SideB at_ =>
-    match halves gb at_ with Some (first, second) => Some ([(ga, first); (ga, second)], []) | None => None end
-  | Separated d =>
-    if separates m d (flat_map corners (parts ga)) (flat_map corners (parts gb)) then Some ([], []) else None
-  | Shared i j wa wb why =>
-    match parts ga, parts gb with
-    | [f], [g] =>
-      if (index f =? i) && (index g =? j) && reason_holds m why wa wb (corners f) (corners g)
-      then Some ([], [Entry (number_of f) (number_of g) (kind_of_reason why)]) else None
-    | _, _ => None
+Definition divide (g : group) (at_ : option Z) : option (group * group) :=
+  match g, at_ with
+  | Places from ps, Some at_ =>
+    match cut (at_ - from) [] ps with
+    | (a :: first, b :: second) => Some (Places from (rev_append (a :: first) []), Places at_ (b :: second))
+    | _ => None
     end
+  | Tree (Node _ _ _ a b), None => Some (Tree a, Tree b)
+  | _, _ => None
   end.
 
 Inductive outcome := Done (found : list entry) | Failed (from_cell : list cell).
 
-Fixpoint run (m : measure) (cs : list cell) (todo : list (group * group)) (found : list entry) : outcome :=
-  match cs, todo with
-  | [], [] => Done found
-  | c :: rest, (ga, gb) :: todo =>
-    match step m c ga gb with
-    | Some (more, entries) => run m rest (more ++ todo) (entries ++ found)
-    | None => Failed cs
-    end
-  | _, _ => Failed cs
-  end.
+Section Cells.
+  (** How corners are posed that are not yet. *)
+  Variables (m : measure) (move_a move_b : triple Z -> triple Z).
+
+  (** What one cell leaves to prove, and the entries that it finds. *)
+  Definition step (c : cell) (ga gb : group) : option (list (group * group) * list entry) :=
+    match c with
+    | Split SideA at_ =>
+      match divide ga at_ with Some (first, second) => Some ([(first, gb); (second, gb)], []) | None => None end
+    | Split SideB at_ =>
+      match divide gb at_ with Some (first, second) => Some ([(ga, first); (ga, second)], []) | None => None end
+    | Separated d =>
+      if separates m d (map move_a (outer ga)) (map move_b (outer gb)) then Some ([], []) else None
+    | Shared i j wa wb why =>
+      match only ga, only gb with
+      | Some f, Some g =>
+        if (index f =? i) && (index g =? j) &&
+           reason_holds m why wa wb (map move_a (corners f)) (map move_b (corners g))
+        then Some ([], [Entry (number_of f) (number_of g) (kind_of_reason why)]) else None
+      | _, _ => None
+      end
+    end.
+
+  Fixpoint run (cs : list cell) (todo : list (group * group)) (found : list entry) : outcome :=
+    match cs, todo with
+    | [], [] => Done found
+    | c :: rest, (ga, gb) :: todo =>
+      match step c ga gb with
+      | Some (more, entries) => run rest (more ++ todo) (entries ++ found)
+      | None => Failed cs
+      end
+    | _, _ => Failed cs
+    end.
+End Cells.
 
 (** * Orders *)
 
@@ -257,6 +314,18 @@ Definition ordered (order : list Z) (ps : list part) : option (list part) :=
   | [] => None
   | _ => if counts 0 places ps then Some (map snd (PartSort.sort (combine (map snd places) ps))) else None
   end.
+
+Definition listed (order : list Z) (ps : list part) : option group :=
+  match ordered order ps with Some sorted => Some (Places 0 sorted) | None => None end.
+(** At most 2^40 parts. *)
+Definition grown (order : list Z) (ps : list part) : option group :=
+  match ordered order ps with
+  | None => None
+  | Some sorted =>
+    match grow 41 (fold_left (fun n _ => n + 1) sorted 0) sorted with Some (t, []) => Some (Tree t) | _ => None end
+  end.
+Definition both (a b : option group) : option (group * group) :=
+  match a, b with Some a, Some b => Some (a, b) | _, _ => None end.
 
 (** * The claim *)
 
@@ -345,26 +414,44 @@ Definition conclude (c : certificate) (o : outcome) : verdict :=
   | Done found => if claim_follows (claimed c) (pairs_of found) then Accepted else ClaimFault
   end.
 
-Definition check_parts (m : measure) (c : certificate) (pa pb : list part) : verdict :=
+(** What is made once for two meshes, in all poses: their scale, whether it fits and the faces are of the right shape,
+    the parts; and their trees, if a certificate cites them. *)
+Record prepared := Prepared { scale : Z; is_scaled : bool; is_shaped : bool; parts_a : list part; parts_b : list part }.
+Definition prepare (a b : mesh) : prepared :=
+  let ev := exponent_of_meshes a b in
+  Prepared ev (fits_mesh ev a && fits_mesh ev b) (forallb is_shape a && forallb is_shape b) (place ev 0 a) (place ev 0 b).
+Definition trees_of (p : prepared) (order_a order_b : list Z) : option (group * group) :=
+  both (grown order_a (parts_a p)) (grown order_b (parts_b p)).
+
+Definition check_parts (m : measure) (move_a move_b : triple Z -> triple Z) (trees : option (group * group))
+    (c : certificate) (pa pb : list part) : verdict :=
   if all (claimed c) then
-    match ordered (order_a c) pa, ordered (order_b c) pb with
-    | Some sa, Some sb => conclude c (run m (cells c) [(Group 0 sa, Group 0 sb)] [])
-    | _, _ => OrderFault
+    match (if halving c then trees else both (listed (order_a c) pa) (listed (order_b c) pb)) with
+    | Some sets => conclude c (run m move_a move_b (cells c) [sets] [])
+    | None => OrderFault
     end
   else
     match order_a c, order_b c, cells c, contacts (claimed c) with
     | [], [], [Shared i j _ _ _], [_] =>
       match find (fun f => index f =? i) pa, find (fun g => index g =? j) pb with
-      | Some f, Some g => conclude c (run m (cells c) [(Group 0 [f], Group 0 [g])] [])
+      | Some f, Some g => conclude c (run m move_a move_b (cells c) [(Places 0 [f], Places 0 [g])] [])
       | _, _ => CellsFault (cells c)
       end
     | _, _, _, _ => OrderFault
     end.
 
-Definition check (s : scene) (c : certificate) : verdict :=
+Definition check_prepared (p : prepared) (trees : option (group * group)) (pa pb : pose) (c : certificate) : verdict :=
   let k := counted (claimed c) in
-  let (ev, er) := exponents s k in
-  if negb (fits_scene ev er s && fits_criterion (ev + er) k) then ScaleFault
-  else if negb (forallb is_shape (mesh_a s) && forallb is_shape (mesh_b s)) then ShapeFault
-  else check_parts (measure_of (ev + er) k) c (place ev (whole_pose ev er (pose_a s)) 0 (mesh_a s))
-                   (place ev (whole_pose ev er (pose_b s)) 0 (mesh_b s)).
+  let ev := scale p in
+  let er := exponent_of_rows ev pa pb k in
+  let late := halving c || negb (all (claimed c)) in
+  let wa := whole_pose ev er pa in
+  let wb := whole_pose ev er pb in
+  if negb (is_scaled p && fits_pose ev er pa && fits_pose ev er pb && fits_criterion (ev + er) k) then ScaleFault
+  else if negb (is_shaped p) then ShapeFault
+  else check_parts (measure_of (ev + er) k) (posed_late late wa) (posed_late late wb) trees c
+                   (posed_early late wa (parts_a p)) (posed_early late wb (parts_b p)).
+
+Definition check (s : scene) (c : certificate) : verdict :=
+  let p := prepare (mesh_a s) (mesh_b s) in
+  check_prepared p (if halving c then trees_of p (order_a c) (order_b c) else None) (pose_a s) (pose_b s) c.

@@ -31,4 +31,4 @@ Extract Inlined Constant Z.shiftl => "Integer.shift".
 Extract Inductive nat => "int" [ "0" "succ" ]
   "(fun f_zero f_next n -> if n = 0 then f_zero () else f_next (n - 1))".
 
-Extraction "checked.ml" check.
+Extraction "checked.ml" prepare trees_of check_prepared.

@@ -236,6 +236,39 @@ Lemma separates_sound m d ps qs : separates m d ps qs = true -> forall ps' qs', 
   ~ related m (map rational ps') (map rational qs').
 Proof. destruct m; [exact (below_apart d ps qs) | exact (gap_far w strict d ps qs) | exact (never_met t d ps qs)]. Qed.
 
+(** Along d every point of vs lies between two of ps. *)
+Definition spans (d : triple Z) (ps vs : list (triple Z)) : Prop :=
+  forall v, In v vs -> exists p q, In p ps /\ In q ps /\ (dot d p <= dot d v <= dot d q)%Z.
+
+Lemma all_below_spans below d ps qs ps' qs' :
+  (forall top v w, (v <= w)%Z -> below top v = true -> below top w = true) -> spans d ps ps' -> spans d qs qs' ->
+  all_below below d ps qs = true -> all_below below d (ps ++ ps') (qs ++ qs') = true.
+Proof.
+  intros Up P Q. unfold all_below. rewrite !andb_true_iff. intros (N & H). split; [auto |].
+  destruct (highest d ps) as [top |] eqn:E; [| discriminate].
+  assert (highest d (ps ++ ps') = Some top) as ->.
+  { pose proof (proj1 (highest_spec d ps None top E)) as Top. unfold highest in *. rewrite fold_left_app, E. clear E.
+    induction ps' as [| v vs IH]; cbn; [auto |]. destruct (P v (or_introl eq_refl)) as (_ & q & _ & I & _ & L).
+    specialize (Top q I). rewrite Z.max_l by lia. apply IH. intros u J. apply P. now right. }
+  rewrite forallb_app, H. cbn. rewrite forallb_forall in *. intros v I. destruct (Q v I) as (q & _ & J & _ & L & _).
+  apply (Up top (dot d q)); auto.
+Qed.
+
+Lemma separates_spans m d ps qs ps' qs' : separates m d ps qs = true -> spans d ps ps' -> spans d qs qs' ->
+  ~ related m (map rational ps') (map rational qs').
+Proof.
+  intros H P Q. apply (separates_sound m d (ps ++ ps') (qs ++ qs')); try apply incl_appr, incl_refl.
+  assert (forall top v w, (v <= w)%Z -> (top <? v)%Z = true -> (top <? w)%Z = true) as Lt
+    by (intros top v w; rewrite !Z.ltb_lt; lia).
+  destruct m as [| w strict | t]; cbn in *; cbv zeta in *.
+  - revert H. now apply all_below_spans.
+  - revert H. apply all_below_spans; auto. intros top u v L. rewrite !andb_true_iff, !Z.ltb_lt.
+    destruct strict; rewrite ?Z.leb_le, ?Z.ltb_lt; nia.
+  - destruct (0 <? dot d t)%Z.
+    + revert H. apply all_below_spans; auto. intros top u v. rewrite !Z.leb_le. lia.
+    + rewrite andb_true_iff in *. destruct H as (Z & H). split; [auto |]. revert H. now apply all_below_spans.
+Qed.
+
 (** * Common points *)
 
 Lemma same_length_spec {S T} (l : list S) (m : list T) : same_length l m = true -> length l = length m.

@@ -231,9 +231,10 @@ let poses_of_csv path =
 
 (* Certificates. *)
 
-(* fault: why the certificate is refused, though it can be read *)
+(* trees: the hashes of those that are cited; fault: why the certificate is refused, though it can be read *)
 type certificate_read =
-  { certificate : certificate; mesh_hashes : string * string; poses_hash : string; fault : string option }
+  { certificate : certificate; mesh_hashes : string * string; poses_hash : string; trees : (string * string) option;
+    fault : string option }
 
 let malformed what = raise (Json.Malformed what)
 let get fields key = match Json.find key fields with Some value -> value | None -> malformed ("no key " ^ key)
@@ -287,16 +288,18 @@ let edge = function
     { edge_of = (if text.[0] = 'a' then SideA else SideB); edge_to = Char.code text.[1] - 48 }
   | _ -> malformed "an edge is a1 to a3 or b1 to b3"
 
+let version_key = "collisionchip_certificate"
 let fields = function Json.Object fields -> fields | _ -> malformed "not an object"
 
-let cell line =
+let cell ~halving line =
   let f = fields line in
+  let split side = Split (side, if halving then None else Some (whole (get f "at"))) in
   let point why = match list (get f "faces") with
     | [ a; b ] -> Shared (whole a, whole b, map integer (list (get f "a")), map integer (list (get f "b")), why)
     | _ -> malformed "a point needs two faces" in
   match get f "cell" with
-  | Json.String "split_a" -> Split (SideA, whole (get f "at"))
-  | Json.String "split_b" -> Split (SideB, whole (get f "at"))
+  | Json.String "split_a" -> split SideA
+  | Json.String "split_b" -> split SideB
   | Json.String "separated" -> Separated (direction (get f "direction"))
   | Json.String "meet" -> point Meet
   | Json.String "near" -> point Near
@@ -306,8 +309,6 @@ let cell line =
      | [ a; b; c ] -> point (Cross (a, b, c))
      | _ -> malformed "a span is three edges")
   | _ -> malformed "an unknown kind of cell"
-
-let version_key = "collisionchip_certificate"
 
 (* A number as the nearest double. *)
 let double = function
@@ -342,23 +343,30 @@ let criterion f =
       else None in
     (counted, fault)
 
-let claim line cells =
-  let f = fields line in
+(* The number of the version, if it is one. *)
+let version fields = match Json.find version_key fields with
+  | Some (Json.Whole n) when Z.leq Z.one n && Z.leq n (Z.of_int 3) -> Z.to_int n
+  | _ -> malformed "no certificate of version 1, 2 or 3"
+
+let claim f cells =
   let counted, fault = criterion f in
-  let fault = match get f version_key with
-    | Json.Whole n when Z.equal n Z.one || Z.equal n (Z.of_int 2) ->
-      let expected = if List.exists (fun key -> Json.find key f <> None) [ "within"; "below"; "along" ] then 2 else 1 in
-      if Z.equal n (Z.of_int expected) then fault else Some "a version that does not fit the claim"
-    | _ -> malformed "no certificate of version 1 or 2" in
+  let version = version f in
+  let all = match get f "all" with Json.Bool all -> all | _ -> malformed "all is true or false" in
+  let expected = if List.exists (fun key -> Json.find key f <> None) [ "within"; "below"; "along" ] then 2 else 1 in
+  let fault =
+    if version = 3 then if all then fault else Some "a certificate of version 3 is of all contacts"
+    else if version = expected then fault else Some "a version that does not fit the claim" in
   let contact value = match list value with
     | [ a; b; told ] -> { face_a = whole a; face_b = whole b; told = relation told }
     | _ -> malformed "a contact is two faces and a relation" in
   let contacts = map contact (list (get f "contacts")) in
-  let all = match get f "all" with Json.Bool all -> all | _ -> malformed "all is true or false" in
+  let halving = version = 3 in
+  let order key = if halving then [] else order (get f key) in
   { certificate =
       { claimed = { all; counted; relation_of_meshes = relation (get f "relation"); contacts };
-        order_a = order (get f "order_a"); order_b = order (get f "order_b"); cells };
+        halving; order_a = order "order_a"; order_b = order "order_b"; cells };
     mesh_hashes = (hash (get f "mesh_a"), hash (get f "mesh_b")); poses_hash = hash (get f "poses");
+    trees = if halving then Some (hash (get f "tree_a"), hash (get f "tree_b")) else None;
     fault }
 
 let begins = function Json.Object fields -> Json.find version_key fields <> None | _ -> false
@@ -372,12 +380,28 @@ let lines_of text =
 let next_certificate lines = match lines with
   | [] -> None
   | first :: rest ->
-    let first = Json.parse first in
+    let first = fields (Json.parse first) in
+    let halving = version first = 3 in
     let rec cells taken = function
       | [] -> (List.rev taken, [])
       | line :: rest as lines ->
         let value = Json.parse line in
-        if begins value then (List.rev taken, lines) else cells (cell value :: taken) rest in
-    ignore (fields first);
+        if begins value then (List.rev taken, lines) else cells (cell ~halving value :: taken) rest in
     let cells, rest = cells [] rest in
     Some (claim first cells, rest)
+
+(* Trees. *)
+
+type tree_read = { faces_in_order : Z.t list; of_mesh : string; tree_hash : string }
+
+let read_tree path =
+  try
+    match lines_of (read_file path) with
+    | [ line ] ->
+      let f = fields (Json.parse line) in
+      if Json.find "collisionchip_tree" f <> Some (Json.Whole Z.one) then malformed "no tree of version 1";
+      let of_mesh = hash (get f "mesh") and faces_in_order = order (get f "order") in
+      let words = Int64.of_string ("0x" ^ of_mesh) :: map Z.to_int64 faces_in_order in
+      { faces_in_order; of_mesh; tree_hash = hash_words words }
+    | _ -> malformed "a tree is one line"
+  with Json.Malformed what -> unreadable "%s: %s" path what

@@ -186,16 +186,101 @@ Proof. intros (eps & E & H). apply H. unfold shorter; cbn. repeat split; lra. Qe
 
 (** * Cells *)
 
-Definition shape (f : part) : list point := map rational (corners f).
+Definition affine (move : triple Z -> triple Z) : Prop :=
+  forall d, exists e c, forall v, dot d (move v) = (dot e v + c)%Z.
+Lemma posed_late_affine late p : affine (posed_late late p).
+Proof.
+  intros d. destruct late.
+  - exists (Triple (x d * x (fst (x p)) + y d * x (fst (y p)) + z d * x (fst (z p)))
+                   (x d * y (fst (x p)) + y d * y (fst (y p)) + z d * y (fst (z p)))
+                   (x d * z (fst (x p)) + y d * z (fst (y p)) + z d * z (fst (z p))))%Z.
+    exists (x d * snd (x p) + y d * snd (y p) + z d * snd (z p))%Z.
+    intros v. unfold posed_late, posed_z, coordinate_z, dot, map3; cbn [x y z]. ring.
+  - exists d, 0%Z. intros v. cbn [posed_late]. ring.
+Qed.
 
-(** The entry e of the faces f and g is true. *)
-Definition about (m : measure) (e : entry) (f g : part) : Prop :=
-  key_a e = number_of f /\ key_b e = number_of g /\ related m (shape f) (shape g) /\
-  (kind_of e = Crosses -> cross (shape f) (shape g)) /\ (kind_of e = Touches -> touch (shape f) (shape g)).
+Lemma spans_moved move ps vs : affine move -> (forall d, spans d ps vs) ->
+  forall d, spans d (map move ps) (map move vs).
+Proof.
+  intros A S d v I. apply in_map_iff in I. destruct I as (u & <- & I). destruct (A d) as (e & c & E).
+  destruct (S e u I) as (p & q & P & Q & L). exists (move p), (move q). rewrite !E.
+  split; [now apply in_map |]. split; [now apply in_map | lia].
+Qed.
 
-(** The pair f, g is decided: not related, or among the entries. *)
-Definition decided (m : measure) (found : list entry) (f g : part) : Prop :=
-  ~ related m (shape f) (shape g) \/ exists e, In e found /\ about m e f g.
+(** The boxes hold the corners. *)
+Definition in_box (low high v : triple Z) : Prop :=
+  (x low <= x v <= x high /\ y low <= y v <= y high /\ z low <= z v <= z high)%Z.
+Fixpoint boxed (t : tree) : Prop :=
+  match t with
+  | Leaf _ => True
+  | Node _ low high a b =>
+    (forall p v, In p (leaves a ++ leaves b) -> In v (corners p) -> in_box low high v) /\ boxed a /\ boxed b
+  end.
+Definition boxed_group (g : group) : Prop := match g with Places _ _ => True | Tree t => boxed t end.
+
+Lemma fold_min vs : forall u, let low := fold_left (map_two Z.min) vs u in forall v, In v (u :: vs) ->
+  (x low <= x v /\ y low <= y v /\ z low <= z v)%Z.
+Proof.
+  induction vs as [| w vs IH]; intros u; cbv zeta in *; cbn [fold_left].
+  - intros v [<- | []]. lia.
+  - pose proof (IH (map_two Z.min u w)) as H. intros v I. pose proof (H _ (or_introl eq_refl)) as L. cbn [map_two x y z] in L.
+    destruct I as [<- | [<- | I]]; [lia | lia |]. apply H. now right.
+Qed.
+Lemma fold_max vs : forall u, let high := fold_left (map_two Z.max) vs u in forall v, In v (u :: vs) ->
+  (x v <= x high /\ y v <= y high /\ z v <= z high)%Z.
+Proof.
+  induction vs as [| w vs IH]; intros u; cbv zeta in *; cbn [fold_left].
+  - intros v [<- | []]. lia.
+  - pose proof (IH (map_two Z.max u w)) as H. intros v I. pose proof (H _ (or_introl eq_refl)) as L. cbn [map_two x y z] in L.
+    destruct I as [<- | [<- | I]]; [lia | lia |]. apply H. now right.
+Qed.
+
+Lemma bounds_hold t : boxed t -> forall p v, In p (leaves t) -> In v (corners p) ->
+  in_box (fst (bounds t)) (snd (bounds t)) v.
+Proof.
+  destruct t as [q | n low high a b]; cbn; [| intros (B & _); auto].
+  intros _ p v [<- | []] V. destruct (corners q) as [| u us]; [destruct V |]. cbn [fst snd].
+  pose proof (fold_min us u v V). pose proof (fold_max us u v V). cbv zeta in *. unfold in_box. lia.
+Qed.
+Lemma node_boxed n a b : boxed a -> boxed b -> boxed (node n a b) /\ leaves (node n a b) = leaves a ++ leaves b.
+Proof.
+  intros A B. pose proof (bounds_hold a A) as Ha. pose proof (bounds_hold b B) as Hb. unfold node.
+  destruct (bounds a) as (la, ha), (bounds b) as (lb, hb). cbn in *. split; [| auto]. split; [| auto].
+  intros p v I V. apply in_app_or in I. unfold in_box in *; cbn.
+  destruct I as [I | I]; [specialize (Ha p v I V) | specialize (Hb p v I V)]; lia.
+Qed.
+Lemma grow_spec levels : forall n ps t rest, grow levels n ps = Some (t, rest) -> boxed t /\ ps = leaves t ++ rest.
+Proof.
+  induction levels as [| levels IH]; intros n ps t rest; cbn; [discriminate |].
+  destruct ps as [| p ps]; [discriminate |]. destruct (n =? 1)%Z.
+  - intros H. injection H as <- <-. cbn. auto.
+  - destruct (grow levels _ (p :: ps)) as [(a, more) |] eqn:Ea; [| discriminate].
+    destruct (grow levels _ more) as [(b, last) |] eqn:Eb; [| discriminate]. intros H. injection H as <- <-.
+    apply IH in Ea. apply IH in Eb. destruct Ea as (Ba & Ea), Eb as (Bb & Eb).
+    destruct (node_boxed n a b Ba Bb) as (B & L). rewrite L, Ea, Eb, app_assoc. auto.
+Qed.
+
+Lemma eight_spans low high v d : in_box low high v ->
+  exists p q, In p (eight low high) /\ In q (eight low high) /\ (dot d p <= dot d v <= dot d q)%Z.
+Proof.
+  intros (X & Y & Z).
+  assert (forall c l u h, (l <= u <= h)%Z -> exists a b, (a = l \/ a = h) /\ (b = l \/ b = h) /\ (c * a <= c * u <= c * b)%Z) as Pick.
+  { intros c l u h L. destruct (Z.le_ge_cases 0 c); [exists l, h | exists h, l]; repeat split; auto; nia. }
+  destruct (Pick (x d) _ _ _ X) as (ax & bx & Ax & Bx & Lx). destruct (Pick (y d) _ _ _ Y) as (ay & by_ & Ay & By & Ly).
+  destruct (Pick (z d) _ _ _ Z) as (az & bz & Az & Bz & Lz).
+  exists (Triple ax ay az), (Triple bx by_ bz). unfold dot; cbn -[Z.mul]. split; [| split; [| lia]].
+  - destruct Ax as [-> | ->], Ay as [-> | ->], Az as [-> | ->]; tauto.
+  - destruct Bx as [-> | ->], By as [-> | ->], Bz as [-> | ->]; tauto.
+Qed.
+Lemma outer_spans g f : boxed_group g -> In f (parts g) -> forall d, spans d (outer g) (corners f).
+Proof.
+  intros B F d v V.
+  assert (exists p q, In p (flat_map corners (parts g)) /\ In q (flat_map corners (parts g)) /\
+            (dot d p <= dot d v <= dot d q)%Z) as Itself.
+  { exists v, v. split; [apply in_flat_map; eauto |]. split; [apply in_flat_map; eauto | lia]. }
+  destruct g as [from ps | [p | n low high a b]]; auto. unfold outer. destruct (4 <? n)%Z; [| auto].
+  apply eight_spans. destruct B as (B & _). apply (B f); auto.
+Qed.
 
 Lemma cut_spec {T} (rest : list T) : forall n taken l m, cut n taken rest = (l, m) ->
   forall a, In a taken \/ In a rest <-> In a l \/ In a m.
@@ -207,44 +292,69 @@ Proof.
   - rewrite <- (IH _ _ _ _ E a). cbn. tauto.
 Qed.
 
-Lemma halves_spec g at_ first second : halves g at_ = Some (first, second) ->
-  forall f, In f (parts g) <-> In f (parts first) \/ In f (parts second).
+Lemma divide_spec g at_ first second : divide g at_ = Some (first, second) ->
+  (forall f, In f (parts g) <-> In f (parts first) \/ In f (parts second)) /\
+  (boxed_group g -> boxed_group first /\ boxed_group second).
 Proof.
-  unfold halves. destruct (cut (at_ - from g) [] (parts g)) as (l, m) eqn:E.
-  destruct l as [| a l]; [discriminate |]. destruct m as [| b m]; [discriminate |].
-  intros H f. injection H as <- <-. pose proof (cut_spec _ _ _ _ _ E f) as C. cbn [parts].
-  cbn [rev_append]. rewrite rev_append_rev, in_app_iff, <- in_rev. cbn [In] in *. tauto.
+  destruct g as [from ps | [p | n low high a b]], at_ as [at_ |]; cbn; try discriminate.
+  - destruct (cut (at_ - from) [] ps) as (l, m) eqn:E.
+    destruct l as [| a l]; [discriminate |]. destruct m as [| b m]; [discriminate |].
+    intros H. injection H as <- <-. split; [| cbn; auto]. intros f. pose proof (cut_spec _ _ _ _ _ E f) as C. cbn [parts].
+    cbn [rev_append]. rewrite rev_append_rev, in_app_iff, <- in_rev. cbn [In] in *. tauto.
+  - intros H. injection H as <- <-. cbn. split; [| tauto]. intros f. apply in_app_iff.
 Qed.
+Lemma only_spec g f : only g = Some f -> parts g = [f].
+Proof. destruct g as [from [| p [|]] | [p |]]; cbn; congruence. Qed.
 
-Lemma step_spec m c ga gb more entries : step m c ga gb = Some (more, entries) ->
+Section Cells.
+Variables (m : measure) (move_a move_b : triple Z -> triple Z).
+Hypotheses (affine_a : affine move_a) (affine_b : affine move_b).
+
+Definition shape (move : triple Z -> triple Z) (f : part) : list point := map rational (map move (corners f)).
+Definition parts_related (f g : part) : Prop := related m (shape move_a f) (shape move_b g).
+
+(** The entry e of the faces f and g is true. *)
+Definition about (e : entry) (f g : part) : Prop :=
+  key_a e = number_of f /\ key_b e = number_of g /\ parts_related f g /\
+  (kind_of e = Crosses -> cross (shape move_a f) (shape move_b g)) /\
+  (kind_of e = Touches -> touch (shape move_a f) (shape move_b g)).
+
+(** The pair f, g is decided: not related, or among the entries. *)
+Definition decided (found : list entry) (f g : part) : Prop :=
+  ~ parts_related f g \/ exists e, In e found /\ about e f g.
+
+Definition part_of (g : group) (fs : list part) : Prop := incl (parts g) fs /\ boxed_group g.
+
+Lemma step_spec c ga gb more entries : step m move_a move_b c ga gb = Some (more, entries) ->
+  boxed_group ga -> boxed_group gb ->
   (forall f g, In f (parts ga) -> In g (parts gb) ->
-    decided m entries f g \/ exists ha hb, In (ha, hb) more /\ In f (parts ha) /\ In g (parts hb)) /\
-  (forall e, In e entries -> exists f g, In f (parts ga) /\ In g (parts gb) /\ about m e f g) /\
-  (forall ha hb, In (ha, hb) more -> incl (parts ha) (parts ga) /\ incl (parts hb) (parts gb)).
+    decided entries f g \/ exists ha hb, In (ha, hb) more /\ In f (parts ha) /\ In g (parts hb)) /\
+  (forall e, In e entries -> exists f g, In f (parts ga) /\ In g (parts gb) /\ about e f g) /\
+  (forall ha hb, In (ha, hb) more -> part_of ha (parts ga) /\ part_of hb (parts gb)).
 Proof.
   destruct c as [[|] at_ | d | i j wa wb why]; cbn.
-  - destruct (halves ga at_) as [(first, second) |] eqn:E; [| discriminate]. intros H. injection H as <- <-.
-    pose proof (halves_spec _ _ _ _ E) as S. split; [| split].
+  - destruct (divide ga at_) as [(first, second) |] eqn:E; [| discriminate]. intros H Ba Bb. injection H as <- <-.
+    destruct (divide_spec _ _ _ _ E) as (S & Sb). split; [| split].
     + intros f g F G. right. apply S in F. destruct F; [exists first, gb | exists second, gb]; cbn; auto.
     + intros e [].
-    + intros ha hb [K | [K | []]]; injection K as <- <-; (split; [intros f F; apply S; auto | apply incl_refl]).
-  - destruct (halves gb at_) as [(first, second) |] eqn:E; [| discriminate]. intros H. injection H as <- <-.
-    pose proof (halves_spec _ _ _ _ E) as S. split; [| split].
+    + intros ha hb [K | [K | []]]; injection K as <- <-;
+        (split; split; [intros f F; apply S; auto | tauto | apply incl_refl | auto]).
+  - destruct (divide gb at_) as [(first, second) |] eqn:E; [| discriminate]. intros H Ba Bb. injection H as <- <-.
+    destruct (divide_spec _ _ _ _ E) as (S & Sb). split; [| split].
     + intros f g F G. right. apply S in G. destruct G; [exists ga, first | exists ga, second]; cbn; auto.
     + intros e [].
-    + intros ha hb [K | [K | []]]; injection K as <- <-; (split; [apply incl_refl | intros f F; apply S; auto]).
-  - destruct (separates m d _ _) eqn:E; [| discriminate]. intros H. injection H as <- <-.
+    + intros ha hb [K | [K | []]]; injection K as <- <-;
+        (split; split; [apply incl_refl | auto | intros f F; apply S; auto | tauto]).
+  - destruct (separates m d _ _) eqn:E; [| discriminate]. intros H Ba Bb. injection H as <- <-.
     split; [| split; [intros e [] | intros ha hb []]].
-    intros f g F G. left. left. apply (separates_sound m d _ _ E).
-    + intros p P. apply in_flat_map. eauto.
-    + intros p P. apply in_flat_map. eauto.
-  - destruct (parts ga) as [| f [|]]; [discriminate | | discriminate].
-    destruct (parts gb) as [| g [|]]; [discriminate | | discriminate].
+    intros f g F G. left. left. apply (separates_spans m d _ _ _ _ E); apply spans_moved; auto; now apply outer_spans.
+  - destruct (only ga) as [f |] eqn:Ga; [| discriminate]. destruct (only gb) as [g |] eqn:Gb; [| discriminate].
+    rewrite (only_spec _ _ Ga), (only_spec _ _ Gb).
     destruct ((index f =? i)%Z && (index g =? j)%Z && _) eqn:E; [| discriminate].
     rewrite !andb_true_iff in E. destruct E as (_ & R).
-    intros H. injection H as <- <-. destruct (reason_sound _ _ _ _ _ _ R) as (M & W).
-    assert (about m (Entry (number_of f) (number_of g) (kind_of_reason why)) f g) as K.
-    { unfold about; cbn. split; [auto |]. split; [auto |]. split; [exact M |].
+    intros H _ _. injection H as <- <-. destruct (reason_sound _ _ _ _ _ _ R) as (M & W).
+    assert (about (Entry (number_of f) (number_of g) (kind_of_reason why)) f g) as K.
+    { unfold about, parts_related; cbn. split; [auto |]. split; [auto |]. split; [exact M |].
       destruct why; cbn in *; split; intros D; try discriminate; exact W. }
     split; [| split].
     + intros f' g' [<- | []] [<- | []]. left. right. eexists. split; [left; reflexivity | exact K].
@@ -252,21 +362,21 @@ Proof.
     + intros ha hb [].
 Qed.
 
-Lemma run_spec m (fs gs : list part) cs : forall todo found result, run m cs todo found = Done result ->
-  (forall ha hb, In (ha, hb) todo -> incl (parts ha) fs /\ incl (parts hb) gs) ->
-  (forall e, In e found -> exists f g, In f fs /\ In g gs /\ about m e f g) ->
-  (forall e, In e result -> exists f g, In f fs /\ In g gs /\ about m e f g) /\
+Lemma run_spec (fs gs : list part) cs : forall todo found result, run m move_a move_b cs todo found = Done result ->
+  (forall ha hb, In (ha, hb) todo -> part_of ha fs /\ part_of hb gs) ->
+  (forall e, In e found -> exists f g, In f fs /\ In g gs /\ about e f g) ->
+  (forall e, In e result -> exists f g, In f fs /\ In g gs /\ about e f g) /\
   incl found result /\
-  (forall ha hb f g, In (ha, hb) todo -> In f (parts ha) -> In g (parts hb) -> decided m result f g).
+  (forall ha hb f g, In (ha, hb) todo -> In f (parts ha) -> In g (parts hb) -> decided result f g).
 Proof.
   induction cs as [| c cs IH]; intros [| (ga, gb) todo] found result; cbn; intros R T F; try discriminate.
   - injection R as <-. split; auto. split; [apply incl_refl | intros ha hb f g []].
-  - destruct (step m c ga gb) as [(more, entries) |] eqn:E; [| discriminate].
-    destruct (step_spec _ _ _ _ _ _ E) as (S1 & S2 & S3).
-    destruct (T ga gb (or_introl eq_refl)) as (Ta & Tb).
+  - destruct (step m move_a move_b c ga gb) as [(more, entries) |] eqn:E; [| discriminate].
+    destruct (T ga gb (or_introl eq_refl)) as ((Ta & Ba) & (Tb & Bb)).
+    destruct (step_spec _ _ _ _ _ E Ba Bb) as (S1 & S2 & S3).
     destruct (IH _ _ _ R) as (R1 & R2 & R3).
     + intros ha hb I. apply in_app_or in I. destruct I as [I | I]; [| auto].
-      destruct (S3 _ _ I) as (Ia & Ib). split; eapply incl_tran; eauto.
+      destruct (S3 _ _ I) as ((Ia & Ca) & (Ib & Cb)). repeat split; auto; eapply incl_tran; eauto.
     + intros e I. apply in_app_or in I. destruct I as [I | I]; [| auto].
       destruct (S2 _ I) as (f & g & If & Ig & A). exists f, g. auto.
     + split; [auto |]. split; [intros e I; apply R2, in_or_app; auto |].
@@ -277,6 +387,8 @@ Proof.
         -- apply (R3 ka kb); auto. apply in_or_app. auto.
       * apply (R3 ha hb); auto. apply in_or_app. auto.
 Qed.
+
+End Cells.
 
 (** * Orders *)
 
@@ -305,6 +417,23 @@ Proof.
   - apply in_map_iff in I. destruct I as ((a, g) & <- & I).
     apply (Permutation_in _ (Permutation_sym P)) in I. apply in_combine_r in I. auto.
 Qed.
+
+(** The group holds the parts and no others. *)
+Definition all_of (ps : list part) (g : group) : Prop := boxed_group g /\ forall f, In f ps <-> In f (parts g).
+Lemma listed_spec order ps g : listed order ps = Some g -> all_of ps g.
+Proof.
+  unfold listed. destruct (ordered order ps) as [sorted |] eqn:E; [| discriminate]. intros H. injection H as <-.
+  split; [exact I | apply (ordered_spec _ _ _ E)].
+Qed.
+Lemma grown_spec order ps g : grown order ps = Some g -> all_of ps g.
+Proof.
+  unfold grown. destruct (ordered order ps) as [sorted |] eqn:E; [| discriminate].
+  destruct (grow _ _ sorted) as [(t, [|]) |] eqn:G; [| discriminate | discriminate]. intros H. injection H as <-.
+  apply grow_spec in G. destruct G as (B & G). rewrite app_nil_r in G. split; [exact B |].
+  cbn. rewrite <- G. apply (ordered_spec _ _ _ E).
+Qed.
+Lemma both_spec a b ga gb : both a b = Some (ga, gb) -> a = Some ga /\ b = Some gb.
+Proof. unfold both. destruct a, b; intros H; try discriminate. injection H as <- <-. auto. Qed.
 
 (** * Pairs of faces of the files *)
 
@@ -542,9 +671,14 @@ End Claim.
 
 (** * The checker *)
 
-Lemma place_spec ev p m : forall i, Forall2 (fun f part => number_of part = number_in_file f /\
-    corners part = map (fun v => posed_z p (map3 (whole ev) v)) (vertices f)) m (place ev p i m).
-Proof. induction m as [| f m IH]; intros i; cbn; constructor; cbn; auto. Qed.
+Lemma place_spec late ev p m : forall i, Forall2 (fun f part => number_of part = number_in_file f /\
+    map (posed_late late p) (corners part) = map (fun v => posed_z p (map3 (whole ev) v)) (vertices f))
+  m (posed_early late p (place ev i m)).
+Proof.
+  unfold posed_early, posed_late.
+  induction m as [| f m IH]; intros i; [destruct late; constructor |]. specialize (IH (i + 1)%Z).
+  destruct late; (constructor; [| exact IH]); cbn; rewrite ?map_id, ?map_map; auto.
+Qed.
 
 Lemma forall2_left {S T} (R : S -> T -> Prop) l m : Forall2 R l m -> forall a, In a l -> exists b, In b m /\ R a b.
 Proof. induction 1 as [| a b l m H F IH]; cbn; [tauto |]. intros c [<- | I]; [eauto |]. destruct (IH c I) as (d & J & K). eauto. Qed.
@@ -565,26 +699,36 @@ Proof.
   - apply coordinate_whole; auto. cbn. rewrite !andb_true_iff. tauto.
 Qed.
 
-Theorem accepted_holds s c : check s c = Accepted -> holds (claimed c) s.
+(** What is prepared may serve many poses and certificates; the trees may be of any orders. *)
+Theorem prepared_holds s c orders trees : let p := prepare (mesh_a s) (mesh_b s) in
+  trees = None \/ trees = trees_of p (fst orders) (snd orders) ->
+  check_prepared p trees (pose_a s) (pose_b s) c = Accepted -> holds (claimed c) s.
 Proof.
-  unfold check. cbv zeta. set (k := counted (claimed c)). destruct (exponents s k) as (ev, er).
-  destruct (fits_scene ev er s && fits_criterion (ev + er) k) eqn:F; [cbn [negb] | discriminate].
-  apply andb_true_iff in F. destruct F as (F & Fk). set (m := measure_of (ev + er) k) in *.
+  cbv zeta. intros Trees. unfold check_prepared. cbv zeta. set (k := counted (claimed c)). set (late := halving c || negb (all (claimed c))).
+  cbn [prepare scale is_scaled is_shaped parts_a parts_b]. set (ev := exponent_of_meshes (mesh_a s) (mesh_b s)).
+  set (er := exponent_of_rows ev (pose_a s) (pose_b s) k).
+  destruct (fits_mesh ev (mesh_a s) && fits_mesh ev (mesh_b s) && fits_pose ev er (pose_a s) && fits_pose ev er (pose_b s)
+            && fits_criterion (ev + er) k) eqn:F; [cbn [negb] | discriminate].
+  rewrite !andb_true_iff in F. destruct F as ((((Ma & Mb) & Pa) & Pb) & Fk). set (m := measure_of (ev + er) k) in *.
   destruct (forallb is_shape (mesh_a s) && forallb is_shape (mesh_b s)); [cbn [negb] | discriminate].
-  unfold fits_scene in F. rewrite !andb_true_iff in F. destruct F as (((Ma & Mb) & Pa) & Pb).
-  set (pa := place _ _ _ (mesh_a s)). set (pb := place _ _ _ (mesh_b s)).
-  pose proof (place_spec ev (whole_pose ev er (pose_a s)) (mesh_a s) 0) as A. fold pa in A.
-  pose proof (place_spec ev (whole_pose ev er (pose_b s)) (mesh_b s) 0) as B. fold pb in B.
+  set (wa := whole_pose ev er (pose_a s)). set (wb := whole_pose ev er (pose_b s)).
+  set (move_a := posed_late late wa). set (move_b := posed_late late wb).
+  set (pa := posed_early late wa _). set (pb := posed_early late wb _).
+  pose proof (place_spec late ev wa (mesh_a s) 0) as A. fold pa in A. fold move_a in A.
+  pose proof (place_spec late ev wb (mesh_b s) 0) as B. fold pb in B. fold move_b in B.
+  pose proof (posed_late_affine late wa) as Affine_a. pose proof (posed_late_affine late wb) as Affine_b.
+  fold move_a in Affine_a. fold move_b in Affine_b.
   pose proof (factor_positive ev er) as Positive.
   (* What is proved of parts holds for faces. *)
   assert (forall f g u v e, In f (mesh_a s) -> In g (mesh_b s) ->
-            number_of u = number_in_file f /\ corners u = map (fun v => posed_z (whole_pose ev er (pose_a s)) (map3 (whole ev) v)) (vertices f) ->
-            number_of v = number_in_file g /\ corners v = map (fun v => posed_z (whole_pose ev er (pose_b s)) (map3 (whole ev) v)) (vertices g) ->
-            (about m e u v -> true_entry s (claimed c) e f g) /\
-            (~ related m (shape u) (shape v) -> ~ base k (placed (pose_a s) f) (placed (pose_b s) g))) as Transfer.
+            number_of u = number_in_file f /\ map move_a (corners u) = map (fun v => posed_z wa (map3 (whole ev) v)) (vertices f) ->
+            number_of v = number_in_file g /\ map move_b (corners v) = map (fun v => posed_z wb (map3 (whole ev) v)) (vertices g) ->
+            (about m move_a move_b e u v -> true_entry s (claimed c) e f g) /\
+            (~ parts_related m move_a move_b u v -> ~ base k (placed (pose_a s) f) (placed (pose_b s) g))) as Transfer.
   { intros f g u v e If Ig (Nu & Cu) (Nv & Cv).
     pose proof (posed_similar ev er _ _ Ma Pa f If) as Sf. pose proof (posed_similar ev er _ _ Mb Pb g Ig) as Sg.
-    rewrite <- Cu in Sf. rewrite <- Cv in Sg. fold (shape u) in Sf. fold (shape v) in Sg.
+    fold wa in Sf. fold wb in Sg. rewrite <- Cu in Sf. rewrite <- Cv in Sg.
+    fold (shape move_a u) in Sf. fold (shape move_b v) in Sg.
     pose proof (related_similar ev er k _ _ _ _ Fk Sf Sg) as Same. split.
     - intros (Ka & Kb & M & X & T). unfold true_entry. rewrite <- Nu, <- Nv. split; [auto |]. split; [auto |].
       split; [| split].
@@ -593,23 +737,27 @@ Proof.
       + intros K. apply (touch_similar _ _ _ _ _ Positive Sf Sg). auto.
     - intros N M. apply N. now apply Same. }
   assert (forall found fs gs, (forall f, In f fs -> In f pa) -> (forall g, In g gs -> In g pb) ->
-            (forall e, In e found -> exists f g, In f fs /\ In g gs /\ about m e f g) ->
+            (forall e, In e found -> exists f g, In f fs /\ In g gs /\ about m move_a move_b e f g) ->
             forall e, In e found -> exists f g, In f (mesh_a s) /\ In g (mesh_b s) /\ true_entry s (claimed c) e f g) as Entries.
   { intros found fs gs Ifs Igs H e I. destruct (H e I) as (u & v & U & V & K).
     destruct (forall2_right _ _ _ A u (Ifs u U)) as (f & If & Rf).
     destruct (forall2_right _ _ _ B v (Igs v V)) as (g & Ig & Rg).
     exists f, g. split; [auto |]. split; [auto |]. now apply (proj1 (Transfer f g u v e If Ig Rf Rg)). }
   unfold check_parts. destruct (all (claimed c)) eqn:All.
-  - destruct (ordered (order_a c) pa) as [sa |] eqn:Oa; [| discriminate].
-    destruct (ordered (order_b c) pb) as [sb |] eqn:Ob; [| discriminate].
-    pose proof (ordered_spec _ _ _ Oa) as Sa. pose proof (ordered_spec _ _ _ Ob) as Sb.
+  - destruct (if halving c then _ else _) as [(ga, gb) |] eqn:Sets; [| discriminate].
+    assert (all_of pa ga /\ all_of pb gb) as ((Ba & Sa) & (Bb & Sb)).
+    { unfold pa, pb, late. destruct (halving c); cbn [orb posed_early].
+      - destruct Trees as [-> | ->]; [discriminate |]. apply both_spec in Sets. destruct Sets as (Ga & Gb).
+        split; [apply (grown_spec _ _ _ Ga) | apply (grown_spec _ _ _ Gb)].
+      - apply both_spec in Sets. destruct Sets as (Ga & Gb).
+        split; [apply (listed_spec _ _ _ Ga) | apply (listed_spec _ _ _ Gb)]. }
     destruct (run _ _ _) as [found | rest] eqn:R; [| discriminate]. cbn.
     destruct (claim_follows _ _) eqn:Follows; [| discriminate]. intros _.
-    destruct (run_spec m sa sb _ _ _ _ R) as (Sound & _ & Cover).
-    + intros ha hb [K | []]. injection K as <- <-. split; apply incl_refl.
+    destruct (run_spec m move_a move_b Affine_a Affine_b (parts ga) (parts gb) _ _ _ _ R) as (Sound & _ & Cover).
+    + intros ha hb [K | []]. injection K as <- <-. repeat split; auto using incl_refl.
     + intros e [].
     + apply (claim_holds s (claimed c) found); auto.
-      * apply (Entries found sa sb); auto; intros f If; [now apply Sa | now apply Sb].
+      * apply (Entries found (parts ga) (parts gb)); auto; intros f If; [now apply Sa | now apply Sb].
       * intros _ f g If Ig.
         destruct (forall2_left _ _ _ A f If) as (u & U & Rf). destruct (forall2_left _ _ _ B g Ig) as (v & V & Rg).
         destruct (Cover _ _ u v (or_introl eq_refl)) as [N | (e & I & K)]; [now apply Sa | now apply Sb | |].
@@ -617,17 +765,22 @@ Proof.
         -- right. exists e. split; [auto |]. apply (proj1 (Transfer f g u v e If Ig Rf Rg) K).
       * congruence.
   - destruct (order_a c); [| discriminate]. destruct (order_b c); [| discriminate].
-    destruct (cells c) as [| [| | i j wa wb why] [|]] eqn:Cells; try discriminate.
+    destruct (cells c) as [| [| | i j us vs why] [|]] eqn:Cells; try discriminate.
     destruct (contacts (claimed c)) as [| one [|]] eqn:Contacts; try discriminate.
     destruct (find _ pa) as [u |] eqn:U; [| discriminate]. destruct (find _ pb) as [v |] eqn:V; [| discriminate].
     apply find_some in U. apply find_some in V.
     destruct (run _ _ _) as [found | rest] eqn:R; [| discriminate]. unfold conclude.
     destruct (claim_follows _ _) eqn:Follows; [| discriminate]. intros _.
-    destruct (run_spec m [u] [v] _ _ _ _ R) as (Sound & _ & _).
-    + intros ha hb [K | []]. injection K as <- <-. split; apply incl_refl.
+    destruct (run_spec m move_a move_b Affine_a Affine_b [u] [v] _ _ _ _ R) as (Sound & _ & _).
+    + intros ha hb [K | []]. injection K as <- <-. repeat split; apply incl_refl.
     + intros e [].
     + apply (claim_holds s (claimed c) found); auto.
       * apply (Entries found [u] [v]); auto; intros f [<- | []]; tauto.
       * congruence.
       * rewrite Contacts. auto.
+Qed.
+
+Theorem accepted_holds s c : check s c = Accepted -> holds (claimed c) s.
+Proof.
+  apply (prepared_holds s c (order_a c, order_b c)). destruct (halving c); auto.
 Qed.

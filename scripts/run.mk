@@ -300,6 +300,7 @@ coverage-cpp: ## branches of the C++ library that its own tests reach, into docs
 proof: ## the checker of certificates that is proved in Coq: its proof, its axioms and the program build/proof/cchip-checked (Debian's coq, libzarith-ocaml-dev, ocaml-findlib)
 	@command -v coqc > /dev/null && ocamlfind query zarith > /dev/null || { echo "install Debian's coq, libzarith-ocaml-dev and ocaml-findlib" >&2; exit 1; }
 	$(MAKE) --no-print-directory -C proof OUT='$(CURDIR)/build/proof'
+	proof/examples.py build/proof/cchip-checked
 
 CERTIFICATES ?= 100000
 proof-campaign: proof $(RELEASE)/build.ninja ## CERTIFICATES certificates and as many changed ones: the proved checker, check.py and cchip check accept the same (CCHIP_SEED repeats a run)
