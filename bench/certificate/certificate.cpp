@@ -16,6 +16,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <sstream>
 
 #include "measure.hpp"
@@ -31,6 +32,7 @@ struct Options {
   std::vector<std::string> meshes = mesh_pair_names();
   std::vector<std::string> classes;
   bool flush = true;
+  bool trees = false;
   std::string save;  ///< folder; empty: none
 };
 
@@ -102,6 +104,16 @@ class Benchmark {
     const std::vector<std::string>& wanted = options_.classes;
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), name) == wanted.end()) return;
     Costs costs;
+    std::optional<CertificateTree> tree_a, tree_b;
+    if (options_.trees) {
+      std::vector<double> times;
+      tree_a.emplace(timed(times, [&] { return make_certificate_tree(a.mesh()); }));
+      tree_b.emplace(timed(times, [&] { return make_certificate_tree(b.mesh()); }));
+      std::ostringstream text;
+      write_certificate_tree(*tree_a, text);
+      fmt::print("tree of A: {:.0f} ms, {:.0f} kB\n", 1000 * times[0], static_cast<double>(text.str().size()) / 1000);
+    }
+    const CitedTrees trees = options_.trees ? CitedTrees{&*tree_a, &*tree_b} : CitedTrees{};
     for (std::size_t i = 0; i < options_.poses; ++i) {
       const PosePair pose = make_pose();
       const CollisionQuery query = {&a, &pose.a, &b, &pose.b};
@@ -116,16 +128,19 @@ class Benchmark {
       });
       costs.hits += answer.hit ? 1 : 0;
       try {
-        const Certificate certificate = timed(costs.make, [&] { return certify(query, request, answer); });
+        const Certificate certificate = timed(costs.make, [&] { return certify(query, request, answer, trees); });
         const CertificateVerdict verdict =
-            timed(costs.check, [&] { return check_certificate(a.mesh(), pose.a, b.mesh(), pose.b, certificate); });
+            timed(costs.check, [&] {
+              return options_.trees ? check_certificate(*tree_a, pose.a, *tree_b, pose.b, certificate)
+                                    : check_certificate(a.mesh(), pose.a, b.mesh(), pose.b, certificate);
+            });
         ++certified_;
         std::ostringstream text;
         write_certificate(certificate, text);
         costs.bytes.push_back(static_cast<double>(text.str().size()));
         costs.cells.push_back(static_cast<double>(certificate.cells.size()));
         if (!verdict.accepted) refuse(meshes, name, i, fmt::format("cell {}: {}", verdict.cell, verdict.reason));
-        if (i < 3) save(meshes + " " + name + " " + std::to_string(i), a.mesh(), b.mesh(), pose, text.str());
+        if (i < 3) save(meshes + " " + name + " " + std::to_string(i), a.mesh(), b.mesh(), pose, text.str(), trees);
       } catch (const std::runtime_error& error) {
         refuse(meshes, name, i, error.what());
       }
@@ -148,7 +163,8 @@ class Benchmark {
   }
 
   /// Meshes, poses and certificate as check.py takes them.
-  void save(const std::string& name, const Mesh& a, const Mesh& b, const PosePair& pose, const std::string& text) {
+  void save(const std::string& name, const Mesh& a, const Mesh& b, const PosePair& pose, const std::string& text,
+            const CitedTrees& trees) {
     if (options_.save.empty()) return;
     const std::filesystem::path folder = std::filesystem::path(options_.save) / name;
     std::filesystem::create_directories(folder);
@@ -161,6 +177,11 @@ class Benchmark {
       }
     }
     std::ofstream(folder / "certificate.jsonl") << text;
+    for (const CertificateTree* tree : {trees.a, trees.b}) {
+      if (tree == nullptr) continue;
+      std::ofstream out(folder / (tree == trees.a ? "a.tree" : "b.tree"));
+      write_certificate_tree(*tree, out);
+    }
   }
 
   const Options options_;
@@ -193,6 +214,7 @@ int main(int argc, char** argv) try {
   app.add_option("--classes", options.classes,
                  "of poses: touch, near, deep, far, graze; together, shifted, turned, apart");
   app.add_flag("!--no-flush", options.flush, "without the meshes that have flush faces");
+  app.add_flag("--trees", options.trees, "certificates cite trees, which are made and checked once for a class");
   app.add_option("--save", options.save, "folder: three of each class with their meshes, for check.py");
   CLI11_PARSE(app, argc, argv);
   return Benchmark(options).run();

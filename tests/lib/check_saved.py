@@ -16,7 +16,8 @@ folders = sorted(p.parent for p in pathlib.Path(sys.argv[1]).glob("*/certificate
 folders = folders[:: int(sys.argv[2]) if len(sys.argv) > 2 else 1]
 refused = 0
 for folder in folders:
-    run = subprocess.run([sys.executable, CHECK, *(folder / f for f in FILES)], capture_output=True, text=True)
+    trees = [folder / f for f in ("a.tree", "b.tree") if (folder / f).exists()]
+    run = subprocess.run([sys.executable, CHECK, *(folder / f for f in FILES), *trees], capture_output=True, text=True)
     if run.returncode != 0:
         refused += 1
         print(f"{folder}: {(run.stdout + run.stderr).strip()}")

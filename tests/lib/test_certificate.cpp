@@ -946,14 +946,14 @@ TEST_CASE("certificate: trees of meshes with boxes, in poses of all kinds", "[li
 }
 
 TEST_CASE("certificate: what a tree is, and what it is not", "[lib][certificate]") {
-  // Six faces of a strip along a diagonal: their box is a cube, which the direction does not part from the other one.
+  // A strip along a diagonal: the boxes of its eighths are cubes, which the direction does not part from the others.
   Mesh strip;
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < 48; ++i) {
     const double x = i;
     testing::add_face(strip, {{x, x, x}, {x + 1, x + 1, x + 1}, {x, x + 0.5, x}});
   }
   std::array<Placed, 2> pair = {{{strip}, {strip}}};
-  pair[1].pose.translation() = Vec3d(4, 0, 0);
+  pair[1].pose.translation() = Vec3d(2, 0, 0);
   const Object a(strip), b(strip);
   const CertificateTree tree = make_certificate_tree(a.mesh()), same = make_certificate_tree(b.mesh());
   const CollisionQuery query = {&a, &pair[0].pose, &b, &pair[1].pose};
@@ -973,7 +973,7 @@ TEST_CASE("certificate: what a tree is, and what it is not", "[lib][certificate]
   changed.order_b = same.order();
   CHECK(reason(changed).empty());
   changed = c;
-  changed.cells.assign(40, {});
+  changed.cells.assign(80, {});
   for (CertificateCell& cell : changed.cells) cell.kind = CellKind::split_a;
   CHECK(reason(changed) == "a split leaves one half empty");
   changed = c;
@@ -1013,7 +1013,7 @@ TEST_CASE("certificate: what a tree is, and what it is not", "[lib][certificate]
   CHECK_THROWS_WITH(read_tree("", a.mesh()), "tree: the file is empty or cannot be read");
   CHECK_THROWS_WITH(read_tree("{\"collisionchip_tree\":2}", a.mesh()),
                     "tree: no tree, or another version of it");
-  CHECK_THROWS_WITH(read_tree("{\"collisionchip_tree\":1,\"order\":[[0,5]],\"mesh\":\"0000000000000000\"}", a.mesh()),
+  CHECK_THROWS_WITH(read_tree("{\"collisionchip_tree\":1,\"order\":[[0,47]],\"mesh\":\"0000000000000000\"}", a.mesh()),
                     "tree: it is of another mesh");
   CHECK_THROWS_WITH(read_tree("{\"collisionchip_tree\":1,\"order\":[[0,4]],\"mesh\":\"0000000000000000\"}", a.mesh()),
                     "tree: an order does not hold each face once");

@@ -98,8 +98,10 @@ class CheckedMesh {
 /// of one face are the leaves. Memory: 52 bytes a face.
 class CertificateTree : public CheckedMesh {
  public:
-  /// Sets with more faces stand for the corners of their boxes, others for their vertices.
+  /// Sets with more faces have boxes.
   static constexpr std::size_t most_faces_without_box = 4;
+  /// How often a set is halved to the boxes whose corners stand for it.
+  static constexpr int halvings = 3;
 
   struct Set {
     std::size_t begin = 0, end = 0;  ///< in the order
@@ -129,17 +131,16 @@ class CertificateTree : public CheckedMesh {
   Set all() const { return {0, order_.size()}; }
   /// \pre the set comes of all() by halving, and has more than most_faces_without_box faces
   const Box& box(const Set& set) const { return boxes_[set.middle()]; }
-
- private:
-  /// Each set has a middle of its own, where its box is kept.
-  Box make_boxes(const Set& set) {
-    if (set.size() <= most_faces_without_box) return box_of_vertices(set);
-    const Box first = make_boxes(set.first_half());
-    const Box second = make_boxes(set.second_half());
-    Box& box = boxes_[set.middle()];
-    box = {first.low.cwiseMin(second.low), first.high.cwiseMax(second.high)};
-    return box;
+  /// What stands for a set: the points whose hull holds it. Those of its parts after so many halvings: of a part that
+  /// is too small for a box, the vertices of its faces, of others the corners of their boxes.
+  template <class OnFaces, class OnBox>
+  void for_hull(const Set& set, const OnFaces& on_faces, const OnBox& on_box, int level = halvings) const {
+    if (set.size() <= most_faces_without_box) return on_faces(set);
+    if (level == 0) return on_box(box(set));
+    for_hull(set.first_half(), on_faces, on_box, level - 1);
+    for_hull(set.second_half(), on_faces, on_box, level - 1);
   }
+  /// The box of any set, by its vertices.
   Box box_of_vertices(const Set& set) const {
     const Vec3d& one = mesh().vertices[mesh().faces[order_[set.begin]].vertex[0]];
     Box box = {one, one};
@@ -153,6 +154,16 @@ class CertificateTree : public CheckedMesh {
     return box;
   }
 
+ private:
+  /// Each set has a middle of its own, where its box is kept.
+  Box make_boxes(const Set& set) {
+    if (set.size() <= most_faces_without_box) return box_of_vertices(set);
+    const Box first = make_boxes(set.first_half());
+    const Box second = make_boxes(set.second_half());
+    Box& box = boxes_[set.middle()];
+    box = {first.low.cwiseMin(second.low), first.high.cwiseMax(second.high)};
+    return box;
+  }
   std::vector<std::uint32_t> order_;
   std::vector<Box> boxes_;
   std::uint64_t tree_hash_ = 0;

@@ -23,11 +23,13 @@ struct CertificateVerdict {
 
 namespace certificate_check {
 
-/// A set of faces: an interval of an order, and for some the box that stands for them.
+/// A set of faces: an interval of an order, which may be that of a tree.
 struct Faces {
-  const std::uint32_t* begin;
-  const std::uint32_t* end;
-  const CertificateTree::Box* box = nullptr;
+  const std::uint32_t* order;
+  CertificateTree::Set set;
+  const CertificateTree* tree = nullptr;
+  const std::uint32_t* begin() const { return order + set.begin; }
+  const std::uint32_t* end() const { return order + set.end; }
 };
 
 struct Checker {
@@ -64,27 +66,37 @@ struct Checker {
 
   Int greatest(std::size_t side, const Point& direction, const Faces& faces) const {
     const Placement::Functional value = placement.functional(side, direction);
-    if (faces.box != nullptr) {  // at the corner that the signs of the factors choose
-      const Point low = placement.of_mesh(side, faces.box->low), high = placement.of_mesh(side, faces.box->high);
-      Point at;
-      for (std::size_t i = 0; i < 3; ++i) at[i] = value.factors[i] > 0 ? high[i] : low[i];
-      return value(at);
-    }
     std::optional<Int> greatest;
-    for_each_vertex(side, faces, [&](std::uint32_t vertex) {
-      Int here = value(placement.of_mesh(side, mesh[side]->vertices[vertex]));
+    const auto take = [&](Int here) {
       if (!greatest || here > *greatest) greatest = std::move(here);
-    });
+    };
+    const auto on_faces = [&](const CertificateTree::Set& set) {
+      for_each_vertex(side, {faces.order, set}, [&](std::uint32_t vertex) {
+        take(value(placement.of_mesh(side, mesh[side]->vertices[vertex])));
+      });
+    };
+    const auto on_box = [&](const CertificateTree::Box& box) {  // at the corner that the signs of the factors choose
+      Vec3d corner = box.low;
+      for (Eigen::Index i = 0; i < 3; ++i) {
+        if (value.factors[static_cast<std::size_t>(i)] > 0) corner[i] = box.high[i];
+      }
+      take(value(placement.of_mesh(side, corner)));
+    };
+    if (faces.tree != nullptr) {
+      faces.tree->for_hull(faces.set, on_faces, on_box);
+    } else {
+      on_faces(faces.set);
+    }
     return *std::move(greatest);
   }
 
   /// Calls `take` for the vertices of the faces: for each once, if there are many faces.
   template <class Take>
   void for_each_vertex(std::size_t side, const Faces& faces, const Take& take) const {
-    std::vector<bool> taken(faces.end - faces.begin < 64 ? 0 : mesh[side]->vertices.size());
-    for (const std::uint32_t* face = faces.begin; face != faces.end; ++face) {
-      for (std::size_t k = 0; k < corners(side, *face); ++k) {
-        const std::uint32_t vertex = mesh[side]->faces[*face].vertex[k];
+    std::vector<bool> taken(faces.set.size() < 64 ? 0 : mesh[side]->vertices.size());
+    for (const std::uint32_t face : faces) {
+      for (std::size_t k = 0; k < corners(side, face); ++k) {
+        const std::uint32_t vertex = mesh[side]->faces[face].vertex[k];
         if (!taken.empty() && taken[vertex]) continue;
         if (!taken.empty()) taken[vertex] = true;
         take(vertex);
@@ -120,7 +132,7 @@ struct Checker {
     }
     require(square == 0, "the points differ");
     if (cell.kind == CellKind::touch)
-      require(overlap(direction_of(cell.direction), {{{&face[0], &face[0] + 1}, {&face[1], &face[1] + 1}}}) <= 0,
+      require(overlap(direction_of(cell.direction), {{{face.data(), {0, 1}}, {face.data(), {1, 2}}}}) <= 0,
               "A is not below B");
     if (cell.kind != CellKind::cross) return;
     std::vector<Point> e;
@@ -194,10 +206,7 @@ inline CertificateVerdict check(const Sides& sides, const Pose& pose_a, const Po
       } else if (cell.kind == CellKind::separated) {
         require(c.all, "a claim of one contact needs a point");
         const auto faces = [&](std::size_t side) {
-          const std::uint32_t* const first = order[side]->data();
-          const bool has_box = cites && sets[side].size() > CertificateTree::most_faces_without_box;
-          return Faces{first + sets[side].begin, first + sets[side].end,
-                       has_box ? &sides.tree[side]->box(sets[side]) : nullptr};
+          return Faces{order[side]->data(), sets[side], cites ? sides.tree[side] : nullptr};
         };
         require(checker.separates(direction_of(cell.direction), {{faces(0), faces(1)}}),
                 c.within > 0 ? "A is not far enough below B" : "A is not strictly below B");

@@ -41,13 +41,8 @@ BoxDivision::BoxDivision(const std::array<const CertificateTree*, 2>& trees, con
   int exponent = within > 0 ? std::ilogb(within) : std::numeric_limits<int>::min();
   std::array<Vec3d, 2> greatest;  // coordinates of the mesh
   for (const std::size_t side : {0U, 1U}) {
-    greatest[side] = Vec3d::Zero();
-    const Mesh& mesh = trees[side]->mesh();
-    for (const Mesh::Face& face : mesh.faces) {
-      for (std::size_t k = 0; k < static_cast<std::size_t>(face.kind); ++k) {
-        greatest[side] = greatest[side].cwiseMax(mesh.vertices[face.vertex[k]].cwiseAbs());
-      }
-    }
+    const CertificateTree::Box box = box_of(side, trees[side]->all());
+    greatest[side] = box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs());
     linear_[side] = poses[side]->linear();
     shift_[side] = poses[side]->translation();
     const auto of_linear = exponent_of(linear_[side]), of_mesh = exponent_of(greatest[side]);
@@ -105,24 +100,15 @@ void BoxDivision::make_directions() {
   }
 }
 
+CertificateTree::Box BoxDivision::box_of(std::size_t side, const CertificateTree::Set& set) const {
+  return set.size() > CertificateTree::most_faces_without_box ? trees_[side]->box(set)
+                                                               : trees_[side]->box_of_vertices(set);
+}
+
 BoxDivision::Node BoxDivision::node(std::size_t side, const CertificateTree::Set& set) const {
   Node n;
   n.set = set;
-  CertificateTree::Box box;
-  if (is_small(n)) {
-    const Mesh& mesh = trees_[side]->mesh();
-    box.low = Vec3d::Constant(std::numeric_limits<double>::infinity());
-    box.high = -box.low;
-    for (std::size_t i = set.begin; i < set.end; ++i) {
-      const Mesh::Face& face = mesh.faces[trees_[side]->order()[i]];
-      for (std::size_t k = 0; k < static_cast<std::size_t>(face.kind); ++k) {
-        box.low = box.low.cwiseMin(mesh.vertices[face.vertex[k]]);
-        box.high = box.high.cwiseMax(mesh.vertices[face.vertex[k]]);
-      }
-    }
-  } else {
-    box = trees_[side]->box(set);
-  }
+  const CertificateTree::Box box = box_of(side, set);
   n.half = 0.5 * box.high - 0.5 * box.low;
   n.centre = linear_[side] * (0.5 * box.high + 0.5 * box.low) + shift_[side];
   n.size = (linear_[side].cwiseAbs() * n.half).sum();
@@ -130,8 +116,7 @@ BoxDivision::Node BoxDivision::node(std::size_t side, const CertificateTree::Set
 }
 
 certificate_check::Faces BoxDivision::faces(std::size_t side, const Node& n) const {
-  const std::uint32_t* const order = trees_[side]->order().data();
-  return {order + n.set.begin, order + n.set.end, is_small(n) ? nullptr : &trees_[side]->box(n.set)};
+  return {trees_[side]->order().data(), n.set, trees_[side]};
 }
 
 BoxDivision::Proposal BoxDivision::part_boxes(const Node& a, const Node& b) const {
@@ -160,63 +145,90 @@ BoxDivision::Proposal BoxDivision::part_boxes(const Node& a, const Node& b) cons
   return {text_[number][opposite], gap[best] > margins_[best]};
 }
 
-BoxDivision::Corners BoxDivision::corners(std::size_t side, const Node& n) const {
-  Corners result;
-  if (is_small(n)) {
-    const Mesh& mesh = trees_[side]->mesh();
-    for (std::size_t i = n.set.begin; i < n.set.end; ++i) {
+const BoxDivision::Hull& BoxDivision::hull(std::size_t side, const Node& n) const {
+  Hull& result = n.hull;
+  if (!result.empty()) return result;
+  const Mesh& mesh = trees_[side]->mesh();
+  const auto on_faces = [&](const CertificateTree::Set& set) {
+    for (std::size_t i = set.begin; i < set.end; ++i) {
       const Mesh::Face& face = mesh.faces[trees_[side]->order()[i]];
       for (std::size_t k = 0; k < static_cast<std::size_t>(face.kind); ++k) {
-        result.emplace_back(linear_[side] * mesh.vertices[face.vertex[k]] + shift_[side]);
+        result.push_back({mesh.vertices[face.vertex[k]], Vec3d::Zero()});
       }
     }
-  } else {
-    for (unsigned corner = 0; corner < 8; ++corner) {
-      Vec3d way = n.half;
-      for (unsigned i = 0; i < 3; ++i) way[i] = (corner >> i & 1U) != 0 ? way[i] : -way[i];
-      result.emplace_back(n.centre + linear_[side] * way);
-    }
-  }
+  };
+  const auto on_box = [&](const CertificateTree::Box& box) {
+    result.push_back({0.5 * box.high + 0.5 * box.low, 0.5 * box.high - 0.5 * box.low});
+  };
+  trees_[side]->for_hull(n.set, on_faces, on_box);
   return result;
 }
 
-void BoxDivision::part_points(const Vec3d& direction, const Corners& a, const Corners& b,
-                              std::vector<Proposal>& found) const {
-  if (direction.isZero(0)) return;
-  std::array<std::array<double, 2>, 2> end;  // of A and of B: least and greatest
-  for (const std::size_t side : {0U, 1U}) {
-    end[side] = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-    for (const Vec3d& p : side == 0 ? a : b) {
-      const double value = direction.dot(p);
-      end[side] = {std::min(end[side][0], value), std::max(end[side][1], value)};
+Vec3d BoxDivision::extreme(std::size_t side, const Hull& hull, const Vec3d& direction) const {
+  const Vec3d turned = linear_[side].transpose() * direction;
+  const std::array<Vec3d, 2>* best = nullptr;
+  double greatest = -std::numeric_limits<double>::infinity();
+  for (const std::array<Vec3d, 2>& box : hull) {
+    const double value = turned.dot(box[0]) + turned.cwiseAbs().dot(box[1]);
+    if (value > greatest || best == nullptr) {
+      greatest = value;
+      best = &box;
     }
   }
+  const Vec3d way = (turned.array() < 0).select(-(*best)[1], (*best)[1]);
+  return linear_[side] * ((*best)[0] + way) + shift_[side];
+}
+
+void BoxDivision::part_along(const Vec3d& direction, const Hull& a, const Hull& b,
+                             std::vector<Proposal>& found) const {
+  if (direction.isZero(0)) return;
   const double least = (1 + 0x1p-40) * within_ * direction.norm();
   for (const double sign : {1.0, -1.0}) {
-    const double gap = (sign > 0 ? end[1][0] - end[0][1] : end[0][0] - end[1][1]) - least;
-    if (!(gap > (along_ ? -margin(direction) : 0))) continue;
-    if (along_ && rise(sign * direction) < 0) continue;
-    found.push_back({digits(direction, sign), gap > margin(direction)});
+    const Vec3d d = sign * direction;
+    const double gap = d.dot(extreme(1, b, -d) - extreme(0, a, d)) - least;
+    if (!(gap > (along_ ? -margin(d) : 0))) continue;
+    if (along_ && rise(d) < 0) continue;
+    found.push_back({digits(direction, sign), gap > margin(d)});
   }
 }
 
-std::vector<BoxDivision::Proposal> BoxDivision::part_vertices(const Node& a, const Node& b) const {
-  const Corners points_a = corners(0, a), points_b = corners(1, b);
+std::vector<BoxDivision::Proposal> BoxDivision::part_hulls(const Node& a, const Node& b) const {
+  const Hull &hull_a = hull(0, a), &hull_b = hull(1, b);
   std::vector<Proposal> found;
   const auto add = [&](const Vec3d& direction) {
-    part_points(direction, points_a, points_b, found);
+    part_along(direction, hull_a, hull_b, found);
     return !found.empty() && found.back().is_certain;
   };
-  for (const Vec3d& direction : direction_) {
-    if (add(direction)) return found;
+  // E. G. Gilbert, "An iterative procedure for computing the minimum of a quadratic form on a convex set", 1966: the
+  // way from A to B becomes the shortest one.
+  Vec3d way = b.centre - a.centre;
+  for (int step = 0; step < 10 && !along_; ++step) {
+    const Vec3d first = extreme(0, hull_a, way), last = extreme(1, hull_b, -way);
+    const Vec3d next = last - first;
+    if (way.dot(next) > (1 + 0x1p-40) * within_ * way.norm()) {
+      for (const double greatest : {15.0, 255.0, 4095.0, 0x1p20}) {
+        if (add(whole_direction(way, greatest))) return found;
+      }
+    }
+    const Vec3d turn = way - next;
+    const double share = way.dot(turn) / turn.squaredNorm();
+    if (!(share > 0x1p-10)) break;  // it is the shortest, about
+    way -= std::min(share, 1.0) * turn;
+  }
+  if (along_) {
+    for (const Vec3d& direction : direction_) {
+      if (add(direction)) return found;
+    }
   }
   if (a.set.size() > 1 || b.set.size() > 1) return found;
   // The axes of the separating axis test, rounded.
   constexpr double greatest = 0x1p20;
   std::array<std::vector<Vec3d>, 2> edges;
   for (const std::size_t side : {0U, 1U}) {
-    const Corners& p = side == 0 ? points_a : points_b;
-    for (std::size_t k = 0; k < p.size(); ++k) edges[side].push_back(p[(k + 1) % p.size()] - p[k]);
+    const Hull& p = side == 0 ? hull_a : hull_b;
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      edges[side].push_back(linear_[side] * (p[(k + 1) % p.size()][0] - p[k][0]));
+    }
     if (add(whole_direction(edges[side][0].cross(edges[side][1]), greatest))) return found;
   }
   for (const Vec3d& p : edges[0]) {

@@ -15,11 +15,14 @@ namespace cchip {
 
 class BoxDivision {
  public:
+  /// Boxes of a hull by their middles and halves, in coordinates of the mesh; vertices are boxes of no size.
+  using Hull = std::vector<std::array<Vec3d, 2>>;
   /// A set with its box: centre in the world, halves of its sides in coordinates of the mesh.
   struct Node {
     CertificateTree::Set set;
     Vec3d centre, half;
     double size = 0;
+    mutable Hull hull = {};  ///< made when it is asked for
   };
   /// Both in the unit of this class, a power of two, in which no number is much above 1.
   struct Proposal {
@@ -46,8 +49,7 @@ class BoxDivision {
   bool propose(const Node& a, const Node& b, const Accept& accept) const {
     const Proposal by_boxes = part_boxes(a, b);
     if (!by_boxes.direction.empty() && accept(by_boxes)) return true;
-    if (!is_small(a) && !is_small(b)) return false;
-    for (const Proposal& proposal : part_vertices(a, b)) {
+    for (const Proposal& proposal : part_hulls(a, b)) {
       if (accept(proposal)) return true;
     }
     return false;
@@ -56,17 +58,18 @@ class BoxDivision {
  private:
   static constexpr Eigen::Index count = 16;  ///< 3 and 3 normals of boxes, 9 products of their edges, one again
   using Lanes = Eigen::Array<double, count, 1>;
-  using Corners = std::vector<Vec3d>;
-
   static bool is_small(const Node& n) { return n.set.size() <= CertificateTree::most_faces_without_box; }
+  CertificateTree::Box box_of(std::size_t side, const CertificateTree::Set& set) const;
   Node node(std::size_t side, const CertificateTree::Set& set) const;
   void make_directions();
   /// That of the greatest gap.
   Proposal part_boxes(const Node& a, const Node& b) const;
-  std::vector<Proposal> part_vertices(const Node& a, const Node& b) const;
-  Corners corners(std::size_t side, const Node& n) const;
-  /// Appends a proposal if the direction, or the opposite one, parts the points, or may.
-  void part_points(const Vec3d& direction, const Corners& a, const Corners& b, std::vector<Proposal>& found) const;
+  std::vector<Proposal> part_hulls(const Node& a, const Node& b) const;
+  const Hull& hull(std::size_t side, const Node& n) const;
+  /// The point of the hull that is farthest along a direction, in the world.
+  Vec3d extreme(std::size_t side, const Hull& hull, const Vec3d& direction) const;
+  /// Appends a proposal if the direction, or the opposite one, parts the hulls, or may.
+  void part_along(const Vec3d& direction, const Hull& a, const Hull& b, std::vector<Proposal>& found) const;
   double margin(const Vec3d& direction) const { return 0x1p-44 * direction.lpNorm<1>() * scale_; }
   /// The sign of the direction's value on the claim's translation.
   int rise(const Vec3d& direction) const;

@@ -164,8 +164,7 @@ class DopDivision {
   std::uint32_t face(std::size_t side, Node n) const { return trees_[side].order[node(side, n).begin]; }
   double size(std::size_t side, Node n) const { return node(side, n).size; }
   certificate_check::Faces faces(std::size_t side, Node n) const {
-    const std::uint32_t* const order = trees_[side].order.data();
-    return {order + node(side, n).begin, order + node(side, n).end};
+    return {trees_[side].order.data(), {node(side, n).begin, node(side, n).end}};
   }
 
   template <class Accept>

@@ -109,12 +109,16 @@ def read_tree(text):
     return tree["mesh"], expanded(tree["order"])
 
 
-def hull(faces, vertices, posed):
-    """Points whose hull holds the faces: their vertices, of more than four the corners of their box in the mesh."""
-    used = {v for f in faces for v in f}
-    if len(faces) <= 4:
+def hull(order, mesh, posed, halvings=3):
+    """Points whose hull holds the faces: of each part of the set after so many halvings the vertices, if it has at most
+    four faces, or else the corners of its box in the mesh."""
+    if len(order) > 4 and halvings > 0:
+        return [p for half in (order[:len(order) // 2], order[len(order) // 2:])
+                for p in hull(half, mesh, posed, halvings - 1)]
+    used = {v for f in order for v in mesh[1][f]}
+    if len(order) <= 4:
         return [posed[v] for v in used]
-    low, high = ([end(axis) for axis in zip(*(vertices[v] for v in used))] for end in (min, max))
+    low, high = ([end(axis) for axis in zip(*(mesh[0][v] for v in used))] for end in (min, max))
     return [posed.at([(low, high)[n >> i & 1][i] for i in range(3)]) for n in range(8)]
 
 
@@ -254,8 +258,7 @@ def check(meshes, poses, lines, trees=None):
                 todo += [[sets[0], half] if side else [half, sets[1]] for half in ((at, end), (begin, at))]
             elif kind == "separated":
                 if cites:
-                    sides = [hull([meshes[s][1][f] for f in orders[s][slice(*sets[s])]], meshes[s][0], points[s])
-                             for s in (0, 1)]
+                    sides = [hull(orders[s][slice(*sets[s])], meshes[s], points[s]) for s in (0, 1)]
                 else:
                     sides = [[p for f in orders[s][slice(*sets[s])] for p in corners(s, f)] for s in (0, 1)]
                 require(separates(cell["direction"], sides, within, below, along), "A is not far enough below B")
