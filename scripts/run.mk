@@ -20,7 +20,7 @@ QUAD_LEAVES ?= build/leaves/BLEND/Suzanne_248.blend.obj
 # more options of campaign-leaves, as --eta 2
 LEAF_ARGS ?=
 
-.PHONY: list release docs-layout peers robots sim-reconfig sim-fabric sim-traverse wave-of formal-all mutants probes test-gates test-export test-debug test-asan test-arm64 cross-windows fuzz-tools fuzz campaign-build campaign campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-cluster campaign-chip campaign-chip-faults campaign-chip-swaps proof proof-campaign proof-of-chip picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot coverage coverage-bins coverage-cpp bench-certificate bench-scene sdist test-sdist bench-python bench-clash bench-sat test-dask test-ply test-robots bench-chip fpga fpga-sweep fpga-quick asic asic-quick tidy deb
+.PHONY: list release docs-layout peers robots sim-reconfig sim-fabric sim-traverse wave-of formal-all mutants probes test-gates test-export test-debug test-asan test-arm64 cross-windows fuzz-tools fuzz campaign-build campaign campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-cluster campaign-chip campaign-chip-faults campaign-chip-swaps proof proof-campaign proof-of-chip picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot coverage coverage-bins coverage-cpp bench-certificate bench-scene sdist test-sdist bench-python bench-clash bench-sat test-dask test-ply test-robots test-assemblies bench-chip fpga fpga-sweep fpga-quick asic asic-quick tidy deb
 
 define RUN_GROUPS
 Try it
@@ -30,7 +30,7 @@ Use the library
 Read
   docs-layout/3_min
 Check a change
-  proof probes wave-of test-sdist test-dask test-ply test-robots test-debug test-asan test-arm64 cross-windows test-gates test-export fuzz tidy
+  proof probes wave-of test-sdist test-dask test-ply test-robots test-assemblies test-debug test-asan test-arm64 cross-windows test-gates test-export fuzz tidy
 Check for long
   formal-all/hours mutants/hours coverage/hours coverage-bins coverage-cpp
   campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-collide campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
@@ -380,6 +380,15 @@ build/readers/requirements.txt: tests/readers/requirements.txt
 test-robots: $(RELEASE)/build.ninja robots ## cchip clash on each of 69 robots of example-robot-data, with their SRDF
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip
 	python3 tests/readers/robots.py $(RELEASE)/bin/cchip build/robots/data
+
+build/assemblies/requirements.txt: tests/readers/assembly_requirements.txt
+	python3 -m venv --clear build/assemblies || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
+	build/assemblies/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement $<
+	cp $< $@
+
+test-assemblies: $(RELEASE)/build.ninja build/assemblies/requirements.txt ## cchip clash on one assembly as Blender, trimesh, cadquery, lib3mf and IfcOpenShell write it (2 GB from PyPI below build/assemblies)
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip
+	build/assemblies/bin/python tests/readers/assemblies.py $(RELEASE)/bin/cchip
 
 test-ply: $(RELEASE)/build.ninja build/readers/requirements.txt ## trimesh, meshio, MeshLab, Blender, Open3D, VTK and plyfile read the PLY of cchip, and the commands in its messages convert files (2 GB from PyPI below build/readers)
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip
