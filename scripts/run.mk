@@ -20,7 +20,7 @@ QUAD_LEAVES ?= build/leaves/BLEND/Suzanne_248.blend.obj
 # more options of campaign-leaves, as --eta 2
 LEAF_ARGS ?=
 
-.PHONY: list release docs-layout peers robots sim-reconfig sim-fabric sim-traverse wave-of formal-all mutants probes test-gates test-export test-debug test-asan test-arm64 cross-windows fuzz-tools fuzz campaign-build campaign campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-cluster campaign-chip campaign-chip-faults campaign-chip-swaps proof proof-campaign proof-of-chip picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot coverage coverage-bins coverage-cpp bench-certificate bench-scene sdist test-sdist bench-python bench-clash bench-sat test-dask test-ply test-robots test-assemblies bench-chip fpga fpga-sweep fpga-quick asic asic-quick tidy deb
+.PHONY: list release docs-layout peers robots sim-reconfig sim-fabric sim-traverse wave-of formal-all mutants probes test-gates test-export test-debug test-asan test-arm64 cross-windows fuzz-tools fuzz campaign-build campaign campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-cluster campaign-chip campaign-chip-faults campaign-chip-swaps proof proof-campaign proof-of-chip picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot coverage coverage-bins coverage-cpp bench-certificate bench-scene sdist test-sdist bench-python bench-clash bench-clash-scale bench-sat test-dask test-ply test-robots test-assemblies bench-chip fpga fpga-sweep fpga-quick asic asic-quick tidy deb
 
 define RUN_GROUPS
 Try it
@@ -36,7 +36,7 @@ Check for long
   campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-collide campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
   campaign-geometry/hours campaign-swaps campaign-cluster campaign-chip/hours campaign-chip-faults campaign-chip-swaps proof-campaign
 Measure
-  bench-reconfig bench-collide/10_min bench-distance bench-robot bench-scene/3_min bench-certificate bench-python/1_min bench-clash bench-sat bench-chip/30_min fpga/hours fpga-quick fpga-sweep/hours asic asic-quick
+  bench-reconfig bench-collide/10_min bench-distance bench-robot bench-scene/3_min bench-certificate bench-python/1_min bench-clash bench-clash-scale/2_min bench-sat bench-chip/30_min fpga/hours fpga-quick fpga-sweep/hours asic asic-quick
 Tools
   peers robots
 endef
@@ -357,6 +357,10 @@ bench-clash: build/python/venv/installed lib/python/tests/clash_requirements.txt
 	build/python/venv/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement lib/python/tests/clash_requirements.txt
 	build/python/venv/bin/python lib/python/tests/bench_clash.py $(BENCH_ARGS)
 
+bench-clash-scale: $(RELEASE)/build.ninja ## time and peak memory of cchip clash over 1,000 and 10,000 parts (two minutes)
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip
+	python3 bench/clash_scale.py $(RELEASE)/bin/cchip
+
 # places and routes of each core in scripts/run bench-sat; SAT_ARGS="--core mine=mine.v" for a further core
 SAT_SEEDS ?= 1
 SAT_ARGS ?=
@@ -386,7 +390,7 @@ build/assemblies/requirements.txt: tests/readers/assembly_requirements.txt
 	build/assemblies/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement $<
 	cp $< $@
 
-test-assemblies: $(RELEASE)/build.ninja build/assemblies/requirements.txt ## cchip clash on one assembly as Blender, trimesh, cadquery, lib3mf and IfcOpenShell write it (2 GB from PyPI below build/assemblies)
+test-assemblies: $(RELEASE)/build.ninja build/assemblies/requirements.txt ## cchip clash on one assembly as Blender, trimesh, cadquery, lib3mf and IfcOpenShell write it (3.5 GB from PyPI below build/assemblies)
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip
 	build/assemblies/bin/python tests/readers/assemblies.py $(RELEASE)/bin/cchip
 
