@@ -36,7 +36,7 @@ Check for long
   campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-collide campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
   campaign-geometry/hours campaign-swaps campaign-cluster campaign-chip/hours campaign-chip-faults campaign-chip-swaps proof-campaign
 Measure
-  bench-reconfig bench-collide/10_min bench-distance bench-robot bench-scene/3_min bench-certificate bench-python/1_min bench-clash bench-clash-scale/2_min bench-sat bench-chip/30_min fpga/hours fpga-quick fpga-sweep/hours asic asic-quick
+  bench-reconfig bench-collide/10_min bench-distance bench-robot bench-scene/3_min bench-certificate bench-python/1_min bench-clash/3_min bench-clash-scale/2_min bench-sat bench-chip/30_min fpga/hours fpga-quick fpga-sweep/hours asic asic-quick
 Tools
   peers robots
 endef
@@ -353,11 +353,11 @@ test-sdist: sdist ## build and install the packed sources in a fresh environment
 bench-python: build/python/venv/installed ## collide_many() and CollisionManager beside python-fcl and trimesh over it (a minute)
 	build/python/venv/bin/python lib/python/tests/bench.py
 
-bench-clash: build/python/venv/installed lib/python/tests/clash_requirements.txt ## assemblies beside trimesh over python-fcl, and MeshLib: speed and wrong verdicts (PyPI)
+bench-clash: build/python/venv/installed lib/python/tests/clash_requirements.txt ## assemblies beside trimesh over python-fcl, MeshLib and ifcclash: speed and wrong verdicts (PyPI)
 	build/python/venv/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement lib/python/tests/clash_requirements.txt
 	build/python/venv/bin/python lib/python/tests/bench_clash.py $(BENCH_ARGS)
 
-bench-clash-scale: $(RELEASE)/build.ninja ## time and peak memory of cchip clash over 1,000 and 10,000 parts (two minutes)
+bench-clash-scale: $(RELEASE)/build.ninja ## time and peak memory of cchip clash over 1,000 and 10,000 parts
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip
 	python3 bench/clash_scale.py $(RELEASE)/bin/cchip
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Blender, trimesh, cadquery, lib3mf and IfcOpenShell write one assembly; `cchip clash` must find what is wrong with it.
+"""Blender, trimesh, cadquery, lib3mf and IfcOpenShell write one assembly; `cchip clash` must find all that is wrong.
 
 usage: assemblies.py CCHIP [WRITER ...]      (from `scripts/run test-assemblies`, whose Python has the programs)
 
-The assembly, in millimetres: flush lugs, a pin with 0.25 of clearance in its bush, blocks 0.5 deep in each other, a part
-placed twice, a mirrored bracket with one part flush on it and one inside, a core in a house, a part scaled by its
-placement, and a tilted group with flush lugs and one 0.01 too deep. Each writer has a line; the last is
+The assembly, in millimetres: flush lugs, a pin with 0.25 of clearance in its bush, blocks 0.5 deep in each other, a
+part placed twice, a mirrored bracket with one part flush on it and one inside, a core in a house, a part scaled by its
+placement, and a tilted group with flush lugs and one 0.01 too deep. Each file has a line; the last is
 `files=N verdicts=N wrong=N skipped=N`; skipped is a program that this Python has not. Exit code 1: a wrong verdict."""
 import contextlib
 import json

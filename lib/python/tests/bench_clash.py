@@ -4,13 +4,13 @@
 
 usage: bench_clash.py [PARTS [CASES [POSES]]]        1000 tori, 200 pairs of each class, 100 poses
 
-Wrong verdicts: pairs of cubes whose places say whether they clash, that is share volume deeper than 1e-4; of ifcclash in
-its mode "intersection", with that as tolerance, and in its mode "collision". First look: tori of 576 triangles, built and
-judged once, all cores; of MeshLib, which has no broad phase in Python, pairs whose boxes overlap; of ifcclash, mode
-"collision", from a model in memory. Cell: an arm of 6 tori among 60 that rest, looked at in each pose, built once; links
-against each other and the rest; FCL has a manager for each. ifcclash, which builds anew, sees every tenth pose only.
-Medians of three alternating passes (of ifcclash one), wall-clock time. Exit code 1 if a verdict of ours is wrong, or if
-the pairs of ours and of FCL differ."""
+Wrong verdicts: pairs of cubes whose places say whether they clash, that is share volume deeper than 1e-4; of ifcclash
+in its mode "intersection", with that as tolerance, and in its mode "collision". First look: tori of 576 triangles,
+built and judged once, all cores; of MeshLib, which has no broad phase in Python, pairs whose boxes overlap; of
+ifcclash, mode "collision", from a model in memory. Cell: an arm of 6 tori among 60 that rest, built once and looked at
+in each pose; FCL has a manager for the arm and one for the rest. ifcclash builds anew, and sees every tenth pose only;
+its time is scaled up. Medians of three alternating passes (of ifcclash one), wall-clock time. Exit code 1 if a verdict
+of ours is wrong, or if the pairs of ours and of FCL differ."""
 import logging
 import os
 import statistics
