@@ -20,7 +20,7 @@ QUAD_LEAVES ?= build/leaves/BLEND/Suzanne_248.blend.obj
 # more options of campaign-leaves, as --eta 2
 LEAF_ARGS ?=
 
-.PHONY: list release docs-layout peers robots sim-reconfig sim-fabric sim-traverse wave-of formal-all mutants probes test-gates test-export test-debug test-asan test-arm64 cross-windows fuzz-tools fuzz campaign-build campaign campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-cluster campaign-chip campaign-chip-faults campaign-chip-swaps proof proof-campaign proof-of-chip picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot coverage coverage-bins coverage-cpp bench-certificate bench-scene sdist test-sdist bench-python bench-clash bench-sat test-dask test-ply test-robots bench-chip fpga fpga-sweep fpga-quick asic asic-quick tidy deb
+.PHONY: list release docs-layout peers robots sim-reconfig sim-fabric sim-traverse wave-of formal-all mutants probes test-gates test-export test-debug test-asan test-arm64 cross-windows fuzz-tools fuzz campaign-build campaign campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-cluster campaign-chip campaign-chip-faults campaign-chip-swaps proof proof-campaign proof-of-chip picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot coverage coverage-bins coverage-cpp bench-certificate bench-scene sdist test-sdist bench-python bench-clash bench-clash-scale bench-sat test-dask test-ply test-robots test-assemblies bench-chip fpga fpga-sweep fpga-quick asic asic-quick tidy deb
 
 define RUN_GROUPS
 Try it
@@ -30,13 +30,13 @@ Use the library
 Read
   docs-layout/3_min
 Check a change
-  proof probes wave-of test-sdist test-dask test-ply test-robots test-debug test-asan test-arm64 cross-windows test-gates test-export fuzz tidy
+  proof probes wave-of test-sdist test-dask test-ply test-robots test-assemblies test-debug test-asan test-arm64 cross-windows test-gates test-export fuzz tidy
 Check for long
   formal-all/hours mutants/hours coverage/hours coverage-bins coverage-cpp
   campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-collide campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
   campaign-geometry/hours campaign-swaps campaign-cluster campaign-chip/hours campaign-chip-faults campaign-chip-swaps proof-campaign
 Measure
-  bench-reconfig bench-collide/10_min bench-distance bench-robot bench-scene/3_min bench-certificate bench-python/1_min bench-clash bench-sat bench-chip/30_min fpga/hours fpga-quick fpga-sweep/hours asic asic-quick
+  bench-reconfig bench-collide/10_min bench-distance bench-robot bench-scene/3_min bench-certificate bench-python/1_min bench-clash/3_min bench-clash-scale/2_min bench-sat bench-chip/30_min fpga/hours fpga-quick fpga-sweep/hours asic asic-quick
 Tools
   peers robots
 endef
@@ -354,9 +354,13 @@ test-sdist: sdist ## build and install the packed sources in a fresh environment
 bench-python: build/python/venv/installed ## collide_many() and CollisionManager beside python-fcl and trimesh over it (a minute)
 	build/python/venv/bin/python lib/python/tests/bench.py
 
-bench-clash: build/python/venv/installed lib/python/tests/clash_requirements.txt ## assemblies beside trimesh over python-fcl, and MeshLib: speed and wrong verdicts (PyPI)
+bench-clash: build/python/venv/installed lib/python/tests/clash_requirements.txt ## assemblies beside trimesh over python-fcl, MeshLib and ifcclash: speed and wrong verdicts (PyPI)
 	build/python/venv/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement lib/python/tests/clash_requirements.txt
 	build/python/venv/bin/python lib/python/tests/bench_clash.py $(BENCH_ARGS)
+
+bench-clash-scale: $(RELEASE)/build.ninja ## time and peak memory of cchip clash over 1,000 and 10,000 parts
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip
+	python3 bench/clash_scale.py $(RELEASE)/bin/cchip
 
 # places and routes of each core in scripts/run bench-sat; SAT_ARGS="--core mine=mine.v" for a further core
 SAT_SEEDS ?= 1
@@ -381,6 +385,15 @@ build/readers/requirements.txt: tests/readers/requirements.txt
 test-robots: $(RELEASE)/build.ninja robots ## cchip clash on each of 69 robots of example-robot-data, with their SRDF
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip
 	python3 tests/readers/robots.py $(RELEASE)/bin/cchip build/robots/data
+
+build/assemblies/requirements.txt: tests/readers/assembly_requirements.txt
+	python3 -m venv --clear build/assemblies || { echo "install Debian's python3-venv: scripts/bootstrap --dev" >&2; exit 1; }
+	build/assemblies/bin/pip install --quiet --disable-pip-version-check --only-binary :all: --requirement $<
+	cp $< $@
+
+test-assemblies: $(RELEASE)/build.ninja build/assemblies/requirements.txt ## cchip clash on one assembly as Blender, trimesh, cadquery, lib3mf and IfcOpenShell write it (3.5 GB from PyPI below build/assemblies)
+	cmake --build $(RELEASE) -j $(JOBS) --target cchip
+	build/assemblies/bin/python tests/readers/assemblies.py $(RELEASE)/bin/cchip
 
 test-ply: $(RELEASE)/build.ninja build/readers/requirements.txt ## trimesh, meshio, MeshLab, Blender, Open3D, VTK and plyfile read the PLY of cchip, and the commands in its messages convert files (2 GB from PyPI below build/readers)
 	cmake --build $(RELEASE) -j $(JOBS) --target cchip
