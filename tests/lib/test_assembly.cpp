@@ -248,6 +248,43 @@ TEST_CASE("assembly: open meshes are surfaces", "[assembly]") {
   CHECK(report.not_judged == 1);
 }
 
+namespace {
+
+/// An L with its notch at (5, 5), 10 high.
+Mesh bracket() {
+  constexpr std::array<std::array<double, 2>, 6> outline = {{{0, 0}, {10, 0}, {10, 5}, {5, 5}, {5, 10}, {0, 10}}};
+  Mesh mesh;
+  for (const double z : {0.0, 10.0}) {
+    for (const auto& p : outline) mesh.vertices.emplace_back(p[0], p[1], z);
+  }
+  for (std::uint32_t i = 0; i < 6; ++i) mesh.faces.push_back({Kind::quad, {i, (i + 1) % 6, (i + 1) % 6 + 6, i + 6}});
+  mesh.faces.push_back({Kind::quad, {0, 3, 2, 1}});
+  mesh.faces.push_back({Kind::quad, {0, 5, 4, 3}});
+  mesh.faces.push_back({Kind::quad, {6, 7, 8, 9}});
+  mesh.faces.push_back({Kind::quad, {6, 9, 10, 11}});
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("assembly: a part in a corner leaves all faces at once", "[assembly]") {
+  const Object corner(bracket());
+  REQUIRE(corner.is_closed());
+  std::mt19937_64 random(sim::seed_from_environment());
+  for (const bool turned : {false, true}) {
+    const Pose all = turned ? cchip_test::random_pose(cchip_test::PoseClass::rigid, 3, random) : Pose::Identity();
+    for (const double depth : {0.0, 1e-12, 1e-5}) {
+      for (const double depth_y : {0.0, 1e-12, 1e-5}) {
+        Assembly assembly = two(corner, Object(make_box({0, 0, 0}, {2, 2, 2})), shifted(5 - depth, 5 - depth_y, 4));
+        for (AssemblyPart& part : assembly.parts) part.pose = all * part.pose;
+        CAPTURE(turned, depth, depth_y);
+        CHECK_FALSE(is_violation(assembly, rule(RuleKind::overlap, 1e-4)));
+        if (depth == 1e-5) CHECK(is_violation(assembly, rule(RuleKind::overlap, 1e-6)));
+      }
+    }
+  }
+}
+
 TEST_CASE("assembly: shells that overlap hide nothing", "[assembly]") {
   Mesh doubled = make_box({0, 0, 0}, {1, 1, 1});
   const Mesh once = doubled;

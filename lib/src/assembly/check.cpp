@@ -5,6 +5,8 @@
 #include <cchip/scene.hpp>
 #include <limits>
 #include <memory>
+#include <numeric>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -22,9 +24,8 @@ using RuleKind = AssemblyRule::Kind;
 using Numbers = std::pair<std::size_t, std::size_t>;
 
 /// The pairs that may be more than apart, or must be.
-std::vector<Numbers> pairs_to_judge(const Assembly& assembly, const RuleBook& rules, unsigned threads) {
-  Scene scene;
-  for (const AssemblyPart& part : assembly.parts) scene.add(part.object, part.pose);  // part i has the id i + 1
+/// \param scene of the parts: part i has the id i + 1
+std::vector<Numbers> pairs_to_judge(const Assembly& assembly, Scene& scene, const RuleBook& rules, unsigned threads) {
   std::set<Numbers> pairs;
   for (const auto& [a, b] : scene.candidates()) pairs.emplace(a - 1, b - 1);
   CpuOptions cpu;
@@ -90,31 +91,70 @@ Box box_of(const AssemblyPart& part) {
   return box;
 }
 
+/// The boxes of the parts, as far as they are asked for: those of the scene are a little larger, and at hand.
+class PartBoxes {
+ public:
+  PartBoxes(const Assembly& assembly, const Scene& scene)
+      : assembly_(assembly), scene_(scene), boxes_(assembly.parts.size()) {}
+
+  std::size_t count() const { return boxes_.size(); }
+  const Box& exact(std::size_t part) {
+    if (!boxes_[part]) boxes_[part] = box_of(assembly_.parts[part]);
+    return *boxes_[part];
+  }
+  double exact_size(std::size_t part) { return (exact(part).greatest - exact(part).least).maxCoeff(); }
+  /// At least the size.
+  double roomy_size(std::size_t part) const {
+    const WorldBox& box = roomy(part);
+    double size = 0;
+    for (std::size_t i = 0; i < 3; ++i) size = std::max(size, box.greatest[i] - box.least[i]);
+    return size;
+  }
+  /// The least or the greatest coordinate of all parts: only those are looked at whose larger box is beyond all that
+  /// were.
+  double end(std::size_t axis, bool greatest) {
+    const auto bound = [&](std::size_t part) {
+      return greatest ? roomy(part).greatest[axis] : -roomy(part).least[axis];
+    };
+    std::vector<std::size_t> parts(count());
+    std::iota(parts.begin(), parts.end(), 0U);
+    std::sort(parts.begin(), parts.end(), [&](std::size_t x, std::size_t y) { return bound(x) > bound(y); });
+    double best = -std::numeric_limits<double>::infinity();
+    const auto i = static_cast<Eigen::Index>(axis);
+    for (const std::size_t part : parts) {
+      if (bound(part) < best) break;
+      best = std::max(best, greatest ? exact(part).greatest[i] : -exact(part).least[i]);
+    }
+    return greatest ? best : -best;
+  }
+
+ private:
+  const WorldBox& roomy(std::size_t part) const { return scene_.box(static_cast<Scene::Id>(part + 1)); }
+
+  const Assembly& assembly_;
+  const Scene& scene_;
+  std::vector<std::optional<Box>> boxes_;
+};
+
 /// Notes about parts one by one, and the size of all.
-void look_at_parts(const Assembly& assembly, AssemblyReport& report) {
-  Box all;
-  std::size_t least = 0;
-  std::size_t greatest = 0;
-  std::vector<double> sizes;
-  for (std::size_t i = 0; i < assembly.parts.size(); ++i) {
-    const AssemblyPart& part = assembly.parts[i];
-    const Box box = box_of(part);
-    all.least = all.least.cwiseMin(box.least);
-    all.greatest = all.greatest.cwiseMax(box.greatest);
-    sizes.push_back((box.greatest - box.least).maxCoeff());
-    if (sizes[i] < sizes[least]) least = i;
-    if (sizes[i] > sizes[greatest]) greatest = i;
+void look_at_parts(const Assembly& assembly, const Scene& scene, AssemblyReport& report) {
+  for (const AssemblyPart& part : assembly.parts) {
     if (const std::optional<OpenEdge> edge = part.object.open_edge()) {
       report.notes.push_back(part.name + " is an open mesh (an odd number of faces use an edge of face " +
                              std::to_string(edge->face) + "), so it is judged as a surface; close it to judge a solid");
     }
   }
   if (assembly.parts.empty()) return;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto axis = static_cast<Eigen::Index>(i);
-    report.size[i] = all.greatest[axis] - all.least[axis];
-  }
+  PartBoxes boxes(assembly, scene);
+  for (std::size_t i = 0; i < 3; ++i) report.size[i] = boxes.end(i, true) - boxes.end(i, false);
   constexpr double suspicious = 1000;
+  std::vector<double> sizes;
+  for (std::size_t i = 0; i < boxes.count(); ++i) sizes.push_back(boxes.roomy_size(i));
+  const auto [small, large] = std::minmax_element(sizes.begin(), sizes.end());
+  if (*large < suspicious / 10 * *small) return;  // larger boxes are not ten times as large
+  for (std::size_t i = 0; i < boxes.count(); ++i) sizes[i] = boxes.exact_size(i);
+  const auto least = static_cast<std::size_t>(std::min_element(sizes.begin(), sizes.end()) - sizes.begin());
+  const auto greatest = static_cast<std::size_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
   if (sizes[greatest] >= suspicious * sizes[least]) {
     report.notes.push_back(assembly.parts[greatest].name + " is " + assembly::number_text(sizes[greatest]) + " long, " +
                            assembly.parts[least].name + " " + assembly::number_text(sizes[least]) +
@@ -127,8 +167,10 @@ void look_at_parts(const Assembly& assembly, AssemblyReport& report) {
 AssemblyReport check(const Assembly& assembly, const AssemblyCheckOptions& options) {
   const RuleBook rules(assembly);
   AssemblyReport report;
-  look_at_parts(assembly, report);
-  const std::vector<Numbers> numbers = pairs_to_judge(assembly, rules, options.threads);
+  Scene scene;
+  for (const AssemblyPart& part : assembly.parts) scene.add(part.object, part.pose);
+  look_at_parts(assembly, scene, report);
+  const std::vector<Numbers> numbers = pairs_to_judge(assembly, scene, rules, options.threads);
   std::vector<AssemblyPair> pairs(numbers.size());
   assembly::run_all(numbers.size(), options.threads, [&](std::size_t i) {
     pairs[i] = assembly::judge_pair(assembly, rules, numbers[i].first, numbers[i].second, options.most_normals);

@@ -30,7 +30,20 @@ Key key_of(const Vec3d& normal) {
 
 }  // namespace
 
-std::vector<Vec3d> normals_of_contacts(const AssemblyPart& a, const AssemblyPart& b, std::size_t most_contacts) {
+namespace {
+
+/// The normal of a face, by its number in the file, in doubles: of a triangle that was cut from it.
+Vec3d rough_normal(const AssemblyPart& part, std::uint32_t face) {
+  const Mesh& mesh = part.object.mesh();
+  const auto& vertex = mesh.faces[part.object.parts(face).front()].vertex;
+  const auto at = [&](std::size_t k) -> Vec3d { return part.pose * mesh.vertices[vertex[k]]; };
+  return (at(1) - at(0)).cross(at(2) - at(0)).stableNormalized();
+}
+
+/// \param normal_of a part and the number of a face in its file
+template <class NormalOf>
+std::vector<Vec3d> normals_by(const AssemblyPart& a, const AssemblyPart& b, std::size_t most_contacts,
+                              const NormalOf& normal_of) {
   CollisionRequest request;
   request.contacts = CollisionRequest::Contacts::all;
   request.max_contacts = most_contacts;
@@ -40,10 +53,10 @@ std::vector<Vec3d> normals_of_contacts(const AssemblyPart& a, const AssemblyPart
     std::size_t count = 0;
   };
   std::map<Key, Found> found;
-  const auto add = [&found](const AssemblyPart& part, const std::map<std::uint32_t, std::size_t>& faces) {
+  const auto add = [&](const AssemblyPart& part, const std::map<std::uint32_t, std::size_t>& faces) {
     for (const auto& [face, count] : faces) {
-      const Vec3d normal = face_normal(part.object, part.pose, face);
-      if (normal.isZero(0)) continue;
+      const Vec3d normal = normal_of(part, face);
+      if (normal.isZero(0) || !normal.allFinite()) continue;
       const auto place = found.emplace(key_of(normal), Found{normal, 0}).first;
       place->second.count += count;
     }
@@ -64,6 +77,14 @@ std::vector<Vec3d> normals_of_contacts(const AssemblyPart& a, const AssemblyPart
   return normals;
 }
 
+}  // namespace
+
+std::vector<Vec3d> normals_of_contacts(const AssemblyPart& a, const AssemblyPart& b) {
+  return normals_by(a, b, std::numeric_limits<std::size_t>::max(), [](const AssemblyPart& part, std::uint32_t face) {
+    return face_normal(part.object, part.pose, face);
+  });
+}
+
 namespace {
 
 /// Do the parts share no volume, or, if one is open, do their surfaces not cross?
@@ -78,25 +99,39 @@ bool are_parted(const AssemblyPart& a, const AssemblyPart& b, const Pose& pose_b
   return result.relation != Relation::crossing;
 }
 
-/// The shortest of the ways along some directions that part B from A; the first that is short enough.
-std::optional<PartingWay> best_way(const AssemblyPart& a, const AssemblyPart& b, double enough,
-                                   const std::vector<Vec3d>& directions) {
-  std::optional<PartingWay> best;
-  for (const Vec3d& direction : directions) {
-    const AlongResult result = clear_along(a.object, a.pose, b.object, b.pose, direction);
-    // A little more than the exact way: the length of the direction, products and the sum below are rounded.
-    const double rounding = 0x1p-50 * b.pose.translation().cwiseAbs().maxCoeff();
-    const double depth = result.upper * (1 + 0x1p-48) + rounding;
-    if (!std::isfinite(depth) || (best && depth >= best->depth)) continue;
-    // Surfaces that are clear of each other may be one inside the other.
-    Pose moved = b.pose;
-    moved.translation() += depth * direction;
-    if (!are_parted(a, b, moved)) continue;
-    best = PartingWay{direction, depth};
-    if (depth <= enough) return best;
+/// The shortest of the ways that part B from A, of those that were looked at.
+class BestWay {
+ public:
+  /// \param enough the first one that is not longer is taken
+  BestWay(const AssemblyPart& a, const AssemblyPart& b, double enough) : a_(a), b_(b), enough_(enough) {}
+
+  bool is_enough() const { return depth_ <= enough_ && std::isfinite(depth_); }
+  std::optional<PartingWay> best() const {
+    if (!std::isfinite(depth_)) return std::nullopt;
+    return PartingWay{direction_, depth_};
   }
-  return best;
-}
+  void look(const Vec3d& direction) {
+    const AlongResult result = clear_along(a_.object, a_.pose, b_.object, b_.pose, direction);
+    // A little more than the exact way: the length of the direction, products and the sum below are rounded.
+    const double rounding = 0x1p-50 * b_.pose.translation().cwiseAbs().maxCoeff();
+    const double depth = result.upper * (1 + 0x1p-48) + rounding;
+    if (!(depth < depth_)) return;
+    // Surfaces that are clear of each other may be one inside the other.
+    Pose moved = b_.pose;
+    moved.translation() += depth * direction;
+    if (are_parted(a_, b_, moved)) {
+      direction_ = direction;
+      depth_ = depth;
+    }
+  }
+
+ private:
+  const AssemblyPart& a_;
+  const AssemblyPart& b_;
+  double enough_;
+  Vec3d direction_ = Vec3d::Zero();
+  double depth_ = std::numeric_limits<double>::infinity();
+};
 
 /// For each direction and its opposite the way along it until all of B is past all of A.
 std::vector<PartingWay> ways_past(const AssemblyPart& a, const AssemblyPart& b, const std::vector<Vec3d>& directions) {
@@ -128,17 +163,42 @@ std::vector<PartingWay> ways_past(const AssemblyPart& a, const AssemblyPart& b, 
 
 std::optional<PartingWay> parting_way(const AssemblyPart& a, const AssemblyPart& b, double enough,
                                       std::size_t most_normals) {
-  std::vector<Vec3d> directions;
-  for (const Vec3d& normal : normals_of_contacts(a, b)) {
-    if (directions.size() / 2 == most_normals) break;
-    directions.insert(directions.end(), {normal, -normal});
+  BestWay way(a, b, enough);
+  std::vector<Vec3d> normals = normals_of_contacts(a, b);
+  normals.resize(std::min(normals.size(), most_normals));
+  const auto looks = [&way](const Vec3d& direction) {
+    for (const double sign : {1.0, -1.0}) {
+      way.look(sign * direction);
+      if (way.is_enough()) return true;
+    }
+    return false;
+  };
+  for (const Vec3d& normal : normals) {
+    if (looks(normal)) return way.best();
   }
-  return best_way(a, b, enough, directions);
+  // A part in a corner slides along one face while it leaves the other: away from two or three at once it leaves all.
+  constexpr std::size_t most_in_corner = 4;
+  normals.resize(std::min(normals.size(), most_in_corner));
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    for (std::size_t k = i + 1; k < normals.size(); ++k) {
+      for (const double sign : {1.0, -1.0}) {
+        const Vec3d two = normals[i] + sign * normals[k];
+        std::vector<Vec3d> sums = {two};
+        for (std::size_t m = k + 1; m < normals.size(); ++m) {
+          sums.insert(sums.end(), {two + normals[m], two - normals[m]});
+        }
+        for (const Vec3d& sum : sums) {
+          if (sum.norm() > 0x1p-10 && looks(sum.normalized())) return way.best();
+        }
+      }
+    }
+  }
+  return way.best();
 }
 
 PartingWay rough_parting_way(const AssemblyPart& a, const AssemblyPart& b) {
   constexpr std::size_t most_contacts = 64;
-  std::vector<Vec3d> directions = normals_of_contacts(a, b, most_contacts);
+  std::vector<Vec3d> directions = normals_by(a, b, most_contacts, rough_normal);
   for (int i = 0; i < 3; ++i) directions.emplace_back(Vec3d::Unit(i));
   const std::vector<PartingWay> ways = ways_past(a, b, directions);
   return *std::min_element(ways.begin(), ways.end(),

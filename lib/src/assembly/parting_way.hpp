@@ -6,16 +6,15 @@
 
 #include <cchip/assembly.hpp>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <vector>
 
 namespace cchip::assembly {
 
-/// The least translation of B along a normal of a face in contact, either way, after which the parts share no volume;
-/// none if no such translation is found. After it the parts were looked at again, so it is a witness.
-/// \param enough the first one that is not longer is taken
-/// \param most_normals how many are tried, those of most contacts first
+/// The least translation of B along a normal of a face in contact, either way, or along a sum of two or three of those
+/// of most contacts, after which the parts share no volume; none if no such translation is found. After it the parts
+/// were looked at again, so it is a witness. \param enough the first one that is not longer is taken \param
+/// most_normals how many are tried, those of most contacts first
 std::optional<PartingWay> parting_way(const AssemblyPart& a, const AssemblyPart& b, double enough,
                                       std::size_t most_normals);
 
@@ -24,9 +23,7 @@ std::optional<PartingWay> parting_way(const AssemblyPart& a, const AssemblyPart&
 PartingWay rough_parting_way(const AssemblyPart& a, const AssemblyPart& b);
 
 /// Normals of the faces in contact, of unit length, each direction and its opposite once; those of most contacts first.
-/// \param most_contacts of more, any so many are looked at
-std::vector<Vec3d> normals_of_contacts(const AssemblyPart& a, const AssemblyPart& b,
-                                       std::size_t most_contacts = std::numeric_limits<std::size_t>::max());
+std::vector<Vec3d> normals_of_contacts(const AssemblyPart& a, const AssemblyPart& b);
 
 }  // namespace cchip::assembly
 

@@ -62,10 +62,16 @@ struct HasReset : std::false_type {};
 template <class Model>
 struct HasReset<Model, std::void_t<decltype(std::declval<Model&>().rst)>> : std::true_type {};
 template <class Model, class = void>
-struct HasTrace : std::false_type {};
+struct CanCallTrace : std::false_type {};
 template <class Model>
-struct HasTrace<Model, std::void_t<decltype(std::declval<Model&>().trace(std::declval<VerilatedFstC*>(), 1))>>
+struct CanCallTrace<Model, std::void_t<decltype(std::declval<Model&>().trace(std::declval<VerilatedFstC*>(), 1))>>
     : std::true_type {};
+/// Was the model built with waveforms? Where each model has trace(), it says so in `traceCapable`, and a call ends the
+/// program if it is false.
+template <class Model, class = void>
+struct HasTrace : CanCallTrace<Model> {};
+template <class Model>
+struct HasTrace<Model, std::void_t<decltype(Model::traceCapable)>> : std::bool_constant<Model::traceCapable> {};
 }  // namespace detail
 
 /// Owns context, model, clock, reset, waveform; runs agents. `Model` has a pin `clk` and, mostly, a pin `rst`.
