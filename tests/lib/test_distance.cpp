@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Distances of faces against brute force in integers.
+#include <boost/multiprecision/cpp_int.hpp>
 #include <catch2/catch.hpp>
+#include <cchip/distance.hpp>
 #include <cchip/internal/exact/oracle.hpp>
 #include <cchip/internal/exact/posed_distances.hpp>
+#include <cchip/shapes.hpp>
 #include <cmath>
 #include <iostream>
 #include <limits>
+#include <map>
+#include <optional>
 
+#include "bvh_meshes.hpp"
 #include "distance_oracle.hpp"
 #include "random_pairs.hpp"
 #include "random_poses.hpp"
@@ -169,6 +175,57 @@ void compare_posed(int rounds, Count& count) {
 TEST_CASE("distance: faces under poses", "[lib][distance]") {
   Count count;
   compare_posed(400, count);
+}
+
+TEST_CASE("distance: of points to a surface, all faces looked at in integers", "[lib][distance]") {
+  std::mt19937_64 random(seed() + 40);
+  const Object object(make_sphere(1, 2, 0.25));
+  const Mesh& mesh = object.mesh();
+  std::map<std::string, int> drawn;
+  for (const PoseClass c :
+       {PoseClass::integers, PoseClass::rigid, PoseClass::affine, PoseClass::mirror, PoseClass::flat}) {
+    Pose pose = random_pose(c, 2, random);
+    if (c == PoseClass::integers) pose.setIdentity();
+    std::vector<Vec3d> points = {pose.translation(), Vec3d(1e6, 3, -0.1)};
+    for (int i = 0; i < 6; ++i) points.push_back(pose * (2 * testing::random_vector(random, 1)));
+    for (int i = 0; i < 3; ++i) points.push_back(pose * mesh.vertices[random() % mesh.vertices.size()]);  // about on it
+    const std::vector<DistanceResult> results = distances(object, pose, points, {}, 1);
+    REQUIRE(results.size() == points.size());
+    constexpr int unit_bits = 400;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const std::vector<IntPoint<BigInt>> at =
+          posed_points({Kind::tri, {points[i], points[i], points[i], {}}}, Pose::Identity(), unit_bits);
+      std::optional<boost::multiprecision::cpp_rational> least;
+      for (std::uint32_t face = 0; face < mesh.faces.size(); ++face) {
+        const IntSquare<BigInt> square =
+            square_of_distance(posed_points(mesh.primitive(face), pose, unit_bits), {at[0]});
+        const boost::multiprecision::cpp_rational value(square.over, square.under);
+        if (!least || value < *least) least = value;
+      }
+      const auto squared = [&](double x) {
+        boost::multiprecision::cpp_rational result(x);
+        return boost::multiprecision::cpp_rational(result * result * (BigInt(1) << 2 * unit_bits));
+      };
+      CAPTURE(int(c), i);
+      CHECK(squared(results[i].lower) <= *least);
+      CHECK(squared(results[i].upper) >= *least);
+      CHECK((results[i].lower == results[i].upper ||
+             results[i].upper == std::nextafter(results[i].lower, std::numeric_limits<double>::infinity())));
+      CHECK((results[i].point_b - points[i]).norm() <= 1e-12 * (1 + points[i].norm()));
+      ++drawn[*least == 0 ? "on it" : "off it"];
+    }
+  }
+  for (const auto& [kind, count] : drawn) std::cout << kind << ' ' << count << '\n';
+  CHECK(drawn.size() == 2);
+  // Threads give the same, in the same order.
+  std::vector<Vec3d> many;
+  for (int i = 0; i < 1000; ++i) many.push_back(2 * testing::random_vector(random, 1));
+  const std::vector<DistanceResult> one = distances(object, Pose::Identity(), many, {}, 1);
+  const std::vector<DistanceResult> three = distances(object, Pose::Identity(), many, {}, 3);
+  for (std::size_t i = 0; i < many.size(); ++i) CHECK(one[i].lower == three[i].lower);
+  CHECK(distances(object, Pose::Identity(), {}).empty());
+  many[700].y() = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_WITH(distances(object, Pose::Identity(), many), Catch::Contains("point 700"));
 }
 
 TEST_CASE("distance: many faces under poses", "[.long]") {

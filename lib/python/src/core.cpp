@@ -1790,6 +1790,41 @@ rel_error: upper - lower <= rel_error * upper is good enough; with 0 both are th
 stop_above: of a distance above this nothing more is asked.
 
 Raises ValueError: a pose as in collide(); rel_error that is not in [0, 1), a stop_above that is negative or nan.)");
+  m.def(
+      "distances",
+      [](nb::handle mesh, nb::handle pose, nb::handle points, bool is_signed, unsigned threads) {
+        const Object object = to_object(mesh, "object");
+        const Pose place = one_pose(pose, "pose");
+        const std::vector<Vec3d> at = to_points(to_array<double>(points, "float64", "points"));
+        std::vector<double> found(at.size()), nearest(3 * at.size());
+        std::vector<std::uint32_t> faces(at.size());
+        {
+          const nb::gil_scoped_release release;
+          const GradualUnderflow mode;
+          const std::vector<cchip::DistanceResult> results = cchip::distances(object, place, at, {}, threads);
+          std::vector<cchip::PointPlace> places(at.size(), cchip::PointPlace::outside);
+          if (is_signed) places = cchip::inside(object, place, at, {}, threads);
+          for (std::size_t i = 0; i < results.size(); ++i) {
+            found[i] = places[i] == cchip::PointPlace::inside ? -results[i].upper : results[i].upper;
+            faces[i] = results[i].face_a;
+            for (std::size_t k = 0; k < 3; ++k) nearest[3 * i + k] = results[i].point_a[static_cast<Eigen::Index>(k)];
+          }
+        }
+        const std::size_t n = found.size();
+        return nb::make_tuple(owned<double>(std::move(found), {n}), owned<double>(std::move(nearest), {n, 3}),
+                              owned<std::uint32_t>(std::move(faces), {n}));
+      },
+      "object"_a.none(), "pose"_a.none(), "points"_a, nb::kw_only(), "signed"_a = false, "threads"_a = 1,
+      nb::sig("def distances(object: Object, pose: numpy.typing.ArrayLike | None, points: numpy.typing.ArrayLike, *, "
+              "signed: bool = False, threads: int = 1) -> tuple[numpy.typing.NDArray[numpy.float64], "
+              "numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.uint32]]"),
+      R"(How far are points, (n, 3), from the surface of a placed object?
+
+Returns their distances, (n,), each the exact number or the double above it; the nearest points of the surface, (n, 3),
+rounded; the faces that these lie on, (n,).
+
+signed: distances of points inside are negative; the surface has to be closed. threads: 0 for all cores.
+Raises ValueError: a point that is not finite; with signed as inside().)");
   nb::class_<cchip::AlongResult> way(m, "Along", nb::is_weak_referenceable(),
                                      "A factor of a direction; clear_along() and first_contact() make it.");
   def_state(way, &along_state, &set_along_state);

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""inside() beside arithmetic, and beside rays in floating point."""
+"""inside() beside arithmetic, and beside rays in floating point; distances() beside those of a torus."""
 import numpy as np
 import pytest
 
-from collisionchip import Object, inside
+from collisionchip import Object, distances, inside
 from shapes import SEED, cube, poses, torus
 
 
@@ -42,3 +42,31 @@ def test_torus():
     placed = vertices @ pose[:3, :3].T + pose[:3, 3]
     assert (found > 0).sum() > 30 and not (found == 0).any()
     assert np.array_equal(crossings(placed, faces, points) % 2 == 1, found > 0)
+
+
+def test_distances():
+    block = Object(*cube())
+    found, nearest, faces = distances(block, None, [[2, 0, 0], [0.25, 0.125, 0], [0.5, 0, 0]], signed=True)
+    assert found.tolist() == [1.5, -0.25, 0]
+    assert nearest.tolist() == [[0.5, 0, 0], [0.5, 0.125, 0], [0.5, 0, 0]]
+    assert faces.dtype == np.uint32 and faces.shape == (3,)
+    assert distances(block, None, [[0.25, 0.125, 0]])[0].tolist() == [0.25]
+    assert [x.shape for x in distances(block, None, np.empty((0, 3)))] == [(0,), (0, 3), (0,)]
+    vertices, triangles = cube()
+    opened = Object(vertices, triangles[1:])
+    assert distances(opened, None, [[2, 0, 0]])[0].tolist() == [1.5]
+    with pytest.raises(ValueError, match="open"):
+        distances(opened, None, [[2, 0, 0]], signed=True)
+    with pytest.raises(ValueError, match="point 1"):
+        distances(block, None, [[2, 0, 0], [np.inf, 0, 0]])
+
+
+def test_distances_of_a_torus():
+    random = np.random.default_rng(SEED)
+    vertices, triangles = torus()
+    points = random.uniform(-2, 2, (2000, 3))
+    found, nearest, _ = distances(Object(vertices, triangles), None, points, signed=True, threads=0)
+    assert np.allclose(np.linalg.norm(points - nearest, axis=1), abs(found), atol=1e-12)
+    assert (np.sign(found) == -inside(Object(vertices, triangles), None, points)).all()
+    to_vertices = np.linalg.norm(points[:, None] - np.asarray(vertices)[None], axis=2).min(axis=1)
+    assert (abs(found) <= to_vertices + 1e-12).all() and (abs(found) >= to_vertices - 0.3).all()

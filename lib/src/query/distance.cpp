@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cchip/distance.hpp>
 #include <cchip/internal/exact/posed_distances.hpp>
 #include <cchip/internal/geometry/decimal.hpp>
+#include <cchip/internal/judge/face_pairs.hpp>
 #include <cchip/internal/judge/near_parts.hpp>
 #include <cmath>
+#include <future>
 #include <limits>
 #include <list>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -448,6 +452,37 @@ DistanceResult distance(const Object& a, const Pose& pose_a, const Object& b, co
     DistanceSearch(query, scale, request).run(result);
   }
   return result;
+}
+
+std::vector<DistanceResult> distances(const Object& object, const Pose& pose, const std::vector<Vec3d>& points,
+                                      const DistanceRequest& request, unsigned threads) {
+  Mesh mesh;  // one point, which poses bring to the others
+  mesh.vertices.emplace_back(Vec3d::Zero());
+  mesh.faces.push_back({Kind::tri, {0, 0, 0}});
+  const Object origin(std::move(mesh));
+  std::vector<Pose> places(points.size(), Pose::Identity());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    places[i].translation() = points[i];
+    check_pose(places[i], ("point " + std::to_string(i)).c_str());
+  }
+  std::vector<DistanceResult> results(points.size());
+  constexpr std::size_t block = 256;  // points that one thread takes at a time
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t begin = next.fetch_add(block); begin < points.size(); begin = next.fetch_add(block)) {
+      for (std::size_t i = begin; i < std::min(points.size(), begin + block); ++i) {
+        results[i] = distance(object, pose, origin, places[i], request);
+      }
+    }
+  };
+  if (threads == 0) threads = std::max(1U, std::thread::hardware_concurrency());
+  std::vector<std::future<void>> others;
+  for (std::size_t i = 1; i < threads && i * block < points.size(); ++i) {
+    others.push_back(std::async(std::launch::async, work));
+  }
+  work();
+  for (std::future<void>& other : others) other.get();
+  return results;
 }
 
 }  // namespace cchip

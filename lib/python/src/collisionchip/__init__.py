@@ -10,7 +10,7 @@ surfaces, not volumes.
 """
 from ._core import (Along, Assembly, AssemblyPair, AssemblyReport, Certificate, CloudResult, Device, Distance, Object,
                     PointCloud, Result, Scene, clear_along, collide, collide_many,
-                    cpu_targets, device_names, distance, first_contact, first_met, inside,
+                    cpu_targets, device_names, distance, distances, first_contact, first_met, inside,
                     load_points, open_device, solids)
 from ._core import version as __version__
 from .manager import CollisionManager, ContactData, DistanceData, scene_to_collision
