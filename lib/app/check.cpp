@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <cchip/certificate_file.hpp>
+#include <cchip/certify.hpp>
 #include <cchip/check.hpp>
+#include <cchip/program/output_file.hpp>
 #include <cchip/program/usage_error.hpp>
 #include <cerrno>
 #include <cstring>
@@ -79,6 +81,8 @@ class Checking {
     a_ = reader.read(options_.file_a);
     b_ = reader.read(options_.file_b);
     left_out_ = reader.faces_left_out();
+    if (options_.tree_a.empty()) return;
+    trees_.emplace(read_tree(options_.tree_a, a_), read_tree(options_.tree_b, b_));
   }
   void check_poses() {
     Input poses(options_.poses_file, streams_);
@@ -111,7 +115,9 @@ class Checking {
   void check_next(const Pose& pose) {
     const std::optional<Certificate> certificate = next();
     if (!certificate) throw wrong_number("fewer");
-    const CertificateVerdict verdict = check_certificate(a_, Pose::Identity(), b_, pose, *certificate);
+    const CertificateVerdict verdict =
+        trees_ ? check_certificate(trees_->first, Pose::Identity(), trees_->second, pose, *certificate)
+               : check_certificate(a_, Pose::Identity(), b_, pose, *certificate);
     ++checked_;
     if (!options_.poses_file.empty()) streams_.out << "certificate " << checked_ << ' ';
     if (verdict.accepted) {
@@ -130,6 +136,7 @@ class Checking {
   CertificateReader reader_;
   Mesh a_;
   Mesh b_;
+  std::optional<std::pair<CertificateTree, CertificateTree>> trees_;
   std::uint64_t left_out_ = 0;
   std::uint64_t checked_ = 0;
   std::uint64_t refused_ = 0;
@@ -140,6 +147,29 @@ class Checking {
 int run_check(const CheckOptions& options, const Streams& streams) {
   check_standard_input({options.file_a, options.file_b, options.certificates, options.poses_file});
   return Checking(options, streams).run();
+}
+
+int run_tree(const TreeOptions& options, const Streams& streams) {
+  sim::check_outputs({{"MESH", options.mesh}}, {{"FILE", options.file}});
+  sim::OutputFile file(options.file);
+  MeshReader reader(streams, options.lenient, options.single);
+  const Mesh mesh = reader.read(options.mesh);
+  write_certificate_tree(make_certificate_tree(mesh), file.stream());
+  file.commit();
+  return reader.faces_left_out() != 0 ? exit_left_out : exit_ok;
+}
+
+CertificateTree read_tree(const std::string& path, const Mesh& mesh) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file || std::filesystem::is_directory(path)) {
+    throw UsageError(fmt::format("{}: the file cannot be read ({}); check its name and permissions", path,
+                                 file ? "is a directory" : std::strerror(errno)));
+  }
+  try {
+    return read_certificate_tree(mesh, file);
+  } catch (const std::runtime_error& error) {
+    throw UsageError(path + ": " + error.what() + "; make it of this mesh with cchip tree");
+  }
 }
 
 }  // namespace cchip::app

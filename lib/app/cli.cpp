@@ -102,10 +102,11 @@ Run add_collide(CLI::App& app, const Hardware* hardware) {
       ->excludes(poses)
       ->excludes(solids)
       ->excludes(points);
-  add_text(*command, "--certificate", options.certificate,
-           "write a proof of each answer into this file, for cchip check")
-      ->excludes(solids)
-      ->excludes(points);
+  auto* certificate = add_text(*command, "--certificate", options.certificate,
+                               "write a proof of each answer into this file, for cchip check")
+                          ->excludes(solids)
+                          ->excludes(points);
+  add_trees(*command, options)->needs(certificate);
   command->footer(
       exit_codes +
       "Examples:\n"
@@ -166,11 +167,30 @@ Run add_check(CLI::App& app) {
                "CSV file with columns r00..r22, tx, ty, tz: a certificate for each row; - reads standard input");
   pose->excludes(matrix)->excludes(poses);
   matrix->excludes(poses);
+  add_trees(*command, options);
   command->footer(exit_codes +
                   "Examples:\n"
                   "  cchip collide a.obj b.stl --pose 0.5,0,0 --certificate proof.jsonl\n"
                   "  cchip check a.obj b.stl proof.jsonl --pose 0.5,0,0");
   return [held](const Streams& streams) { return run_check(*held, streams); };
+}
+
+Run add_tree(CLI::App& app) {
+  const auto held = std::make_shared<TreeOptions>();
+  TreeOptions& options = *held;
+  CLI::App* command = app.add_subcommand(
+      "tree", "Makes a tree of a mesh, once, which proofs of collide --certificate cite: they are short then");
+  add_text(*command, "MESH", options.mesh, "mesh file (OBJ, OFF, PLY, STL); - reads standard input")->required();
+  add_text(*command, "FILE", options.file, "the tree")->required();
+  add_reading(*command, options);
+  command->footer(
+      exit_codes +
+      "Examples:\n"
+      "  cchip tree a.obj a.tree\n"
+      "  cchip tree b.stl b.tree\n"
+      "  cchip collide a.obj b.stl --poses poses.csv --certificate proofs.jsonl --tree-a a.tree --tree-b b.tree\n"
+      "  cchip check a.obj b.stl proofs.jsonl --poses poses.csv --tree-a a.tree --tree-b b.tree");
+  return [held](const Streams& streams) { return run_tree(*held, streams); };
 }
 
 Run add_clash(CLI::App& app) {
@@ -360,6 +380,7 @@ int dispatch(std::vector<std::string> arguments, const Streams& streams, const H
       {"collide", [hardware](CLI::App& to) { return add_collide(to, hardware); }},
       {"distance", add_distance},
       {"check", add_check},
+      {"tree", add_tree},
       {"clash", add_clash},
   };
   if (hardware != nullptr) commands.insert(commands.end(), hardware->commands.begin(), hardware->commands.end());

@@ -28,6 +28,7 @@
 #include <system_error>
 #include <utility>
 
+#include "check.hpp"
 #include "hardware.hpp"
 #include "html_view.hpp"
 #include "mesh_source.hpp"
@@ -199,16 +200,24 @@ std::string to_word(const std::optional<Relation>& relation) {
 /// The file of the proofs, a certificate for each query.
 class ProofFile {
  public:
-  explicit ProofFile(const std::string& path) : file_(path) {}
+  explicit ProofFile(const CollideOptions& options) : options_(options), file_(options.certificate) {}
+  /// Reads the trees, if there are any.
+  void prepare(const Object& a, const Object& b) {
+    if (!options_.tree_a.empty())
+      trees_.emplace(read_tree(options_.tree_a, a.mesh()), read_tree(options_.tree_b, b.mesh()));
+  }
   void add(const Object& a, const Object& b, const Pose& pose, const CollisionRequest& request,
            const CollisionResult& result) {
     const Pose pose_a = Pose::Identity();
-    write_certificate(certify({&a, &pose_a, &b, &pose}, request, result), file_.stream());
+    const CitedTrees trees = trees_ ? CitedTrees{&trees_->first, &trees_->second} : CitedTrees{};
+    write_certificate(certify({&a, &pose_a, &b, &pose}, request, result, trees), file_.stream());
   }
   void commit() { file_.commit(); }
 
  private:
+  const CollideOptions& options_;
   sim::OutputFile file_;
+  std::optional<std::pair<CertificateTree, CertificateTree>> trees_;
 };
 
 /// The answer in words.
@@ -293,7 +302,7 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
   std::optional<HtmlView> view;
   if (!options.html.empty()) view.emplace(options.html);
   std::optional<ProofFile> proofs;
-  if (!options.certificate.empty()) proofs.emplace(options.certificate);
+  if (!options.certificate.empty()) proofs.emplace(options);
   const Pose pose = parse_pose_options(options.pose, options.pose_matrix);
   const CollisionRequest request = request_of(options);
   try {
@@ -304,6 +313,7 @@ int answer_one(const CollideOptions& options, Device& device, const Streams& str
   MeshReader reader(streams, options.lenient, options.single);
   const Object a = reader.read_object(options.file_a);
   const Object b = reader.read_object(options.file_b);
+  if (proofs) proofs->prepare(a, b);
   Totals totals;
   const CollisionResult result =
       timed(totals.time, [&] { return collide(device, a, Pose::Identity(), b, pose, request); });
@@ -471,7 +481,7 @@ class PosesRunner {
  public:
   PosesRunner(const CollideOptions& options, Device& device, const Streams& streams)
       : options_(options), device_(device), streams_(streams), request_(request_of(options)) {
-    if (!options.certificate.empty()) proofs_.emplace(options.certificate);
+    if (!options.certificate.empty()) proofs_.emplace(options);
   }
 
   Totals run() {
@@ -497,6 +507,7 @@ class PosesRunner {
     const Object a = meshes.read_object(options_.file_a);
     const Object b = meshes.read_object(options_.file_b);
     totals_.left_out = meshes.faces_left_out();
+    if (proofs_) proofs_->prepare(a, b);
     writer_ = make_row_writer(options_.format, streams_.out, names_behind(columns.passed_names(), names()));
     Progress progress(streams_.err, streams_.progress, "poses");
     std::error_code no_size;  // of a pipe

@@ -36,10 +36,12 @@ struct CollideOptions {
   bool single = false;     ///< coordinates are rounded to single precision
   std::string device = "cpu";
   Format format = Format::table;
-  std::string expect;                  ///< column of the file; empty: none
-  std::string ply;                     ///< path of the coloured picture with the curves; empty: none
-  std::string html;                    ///< path of the view for a browser; empty: none
-  std::string certificate;             ///< path of the proofs of the answers; empty: none
+  std::string expect;       ///< column of the file; empty: none
+  std::string ply;          ///< path of the coloured picture with the curves; empty: none
+  std::string html;         ///< path of the view for a browser; empty: none
+  std::string certificate;  ///< path of the proofs of the answers; empty: none
+  std::string tree_a;       ///< files of trees that these cite; empty: none
+  std::string tree_b;
   std::uint64_t slots = 0;             ///< of device sim, with swaps; 0: a static chip
   std::uint64_t chips = 1;             ///< of device sim
   const Hardware* hardware = nullptr;  ///< null: there is none

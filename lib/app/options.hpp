@@ -41,18 +41,35 @@ CLI::Option* add_choice(CLI::App& command, const std::string& name, Value& value
   return command.add_option_function<std::string>(name, choose, description)->check(CLI::IsMember(words));
 }
 
+/// How meshes are read.
+template <class Options>
+void add_reading(CLI::App& command, Options& options) {
+  command.add_flag("--lenient", options.lenient,
+                   "leave out faces that cannot be used, name them on standard error, and end with exit code 4");
+  command.add_flag("--single", options.single,
+                   "round the coordinates to single precision, so that parts from programs that round "
+                   "and from others meet");
+}
+
 /// Two meshes, --lenient, and the option --pose, which is returned.
 template <class Options>
 CLI::Option* add_meshes(CLI::App& command, Options& options) {
   add_text(command, "A", options.file_a, "mesh that stays; - reads standard input")->required();
   add_text(command, "B", options.file_b, "mesh that is placed")->required();
-  command.add_flag("--lenient", options.lenient,
-                   "leave out faces that cannot be used, name them on standard error, and end with exit code 4");
-  command.add_flag("--single", options.single,
-                   "round the coordinates of both files to single precision, so that parts from programs that round "
-                   "and from others meet");
+  add_reading(command, options);
   return add_text(command, "--pose", options.pose,
                   "tx,ty,tz[,rx,ry,rz]: rotate B by degrees about x, then y, then z, then move it");
+}
+
+/// The trees of both meshes that certificates cite.
+/// \returns the first, which needs the second, and the other way round
+template <class Options>
+CLI::Option* add_trees(CLI::App& command, Options& options) {
+  auto* a =
+      add_text(command, "--tree-a", options.tree_a, "tree of A, which cchip tree made: proofs that cite it are short");
+  auto* b = add_text(command, "--tree-b", options.tree_b, "the same of B");
+  b->needs(a);
+  return a->needs(b);
 }
 
 }  // namespace cchip::app

@@ -258,6 +258,16 @@ TEST_CASE("receipts: stale, missing and refused", "[assembly][receipts]") {
   other.rules = {rule(RuleKind::nothing)};  // the same receipt, under a rule that wants more
   CHECK(verify_receipts(other, folder.path()).count(ReceiptState::unproved) == 1);
 
+  const std::string tree = folder.files().back(), tree_text = folder.read(tree);
+  REQUIRE(tree.rfind("tree-", 0) == 0);
+  folder.write(tree, "{\"collisionchip_tree\":1,\"mesh\":\"" + tree.substr(5, 16) + "\",\"order\":[5,4,3,2,1,0]}\n");
+  CHECK(text_of(assembly) == "a and b: 000001.jsonl: it cites other trees");
+  folder.write(tree, "");
+  CHECK(text_of(assembly) == "a and b: 000001.jsonl: tree: the file is empty or cannot be read");
+  fs::remove(folder.path() + "/" + tree);
+  CHECK(text_of(assembly) == "a and b: 000001.jsonl: " + tree + " cannot be read");
+  folder.write(tree, tree_text);
+  CHECK(verify_receipts(assembly, folder.path()).count(ReceiptState::proved) == 1);
   fs::remove(folder.path() + "/000001.jsonl");
   CHECK(text_of(assembly) == "a and b: 000001.jsonl cannot be read");
   CHECK(verify_receipts(assembly, folder.path()).pairs[0].state == ReceiptState::refused);
@@ -272,6 +282,8 @@ TEST_CASE("receipts: folders", "[assembly][receipts]") {
   const std::string text = folder.read("receipts.json");
   proved(assembly, folder);  // in their place
   CHECK(folder.read("receipts.json") == text);
+  CHECK(folder.files().size() == 3);  // with a tree
+  fs::remove(folder.path() + "/" + folder.files().back());
   CHECK(folder.files() == std::vector<std::string>{"000001.jsonl", "receipts.json"});
   std::string elsewhere = text;
   elsewhere.replace(elsewhere.find("000001.jsonl"), 12, "../1.jsonl");

@@ -905,8 +905,7 @@ TEST_CASE("certificate: trees of meshes with boxes, in poses of all kinds", "[li
     if (n % 3 == 0) pair[1].pose.linear() *= n % 2 == 0 ? 0x1p450 : 0x1p-450;
     const CollisionQuery query = {&a, &pair[0].pose, &b, &pair[1].pose};
     const auto holds = [&](const Certificate& certificate) {
-      const CertificateVerdict verdict =
-          check_certificate(tree_a, pair[0].pose, tree_b, pair[1].pose, certificate);
+      const CertificateVerdict verdict = check_certificate(tree_a, pair[0].pose, tree_b, pair[1].pose, certificate);
       INFO(n << ": " << verdict.reason << " in cell " << verdict.cell);
       CHECK(verdict.accepted);
       return verdict.accepted;
@@ -1011,8 +1010,7 @@ TEST_CASE("certificate: what a tree is, and what it is not", "[lib][certificate]
   CHECK(read_tree(text.substr(0, text.size() - 1), a.mesh()).tree_hash() == tree.tree_hash());
   CHECK_THROWS_WITH(read_tree(text + text, a.mesh()), "tree: more than one line");
   CHECK_THROWS_WITH(read_tree("", a.mesh()), "tree: the file is empty or cannot be read");
-  CHECK_THROWS_WITH(read_tree("{\"collisionchip_tree\":2}", a.mesh()),
-                    "tree: no tree, or another version of it");
+  CHECK_THROWS_WITH(read_tree("{\"collisionchip_tree\":2}", a.mesh()), "tree: no tree, or another version of it");
   CHECK_THROWS_WITH(read_tree("{\"collisionchip_tree\":1,\"order\":[[0,47]],\"mesh\":\"0000000000000000\"}", a.mesh()),
                     "tree: it is of another mesh");
   CHECK_THROWS_WITH(read_tree("{\"collisionchip_tree\":1,\"order\":[[0,4]],\"mesh\":\"0000000000000000\"}", a.mesh()),

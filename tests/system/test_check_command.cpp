@@ -69,6 +69,42 @@ TEST_CASE("check: a certificate of collide is accepted, its claim is the answer"
   CHECK(last_line(piped.out) == "certificates=1 accepted=1 refused=0");
 }
 
+TEST_CASE("check: trees are made once and cited", "[system][check]") {
+  const TemporaryFolder folder;
+  const std::string file = folder.path("proof.jsonl"), spider = folder.path("spider.tree"),
+                    cube = folder.path("cube.tree");
+  CHECK(run_cchip({"tree", spider_file, spider}).code == exit_ok);
+  CHECK(run_cchip({"tree", cube_file, cube}).code == exit_ok);
+  const std::string poses = folder.write("poses.csv", "tx,ty,tz\n0,0,0\n60,0,10\n500,0,0\n");
+  const std::vector<std::string> trees = {"--poses", poses, "--tree-a", spider, "--tree-b", cube};
+  std::vector<std::string> options = trees;
+  options.insert(options.end(), {"--contacts", "all"});
+  prove(spider_file, cube_file, file, options);
+  const std::string proof = folder.read("proof.jsonl");
+  CHECK_THAT(proof, Catch::Contains("{\"collisionchip_certificate\":3,") && !Catch::Contains("order_a"));
+  const Outcome outcome = check(spider_file, cube_file, file, trees);
+  CHECK(outcome.code == exit_ok);
+  CHECK(last_line(outcome.out) == "certificates=3 accepted=3 refused=0");
+  const Outcome without = check(spider_file, cube_file, file, {"--poses", poses});
+  CHECK(without.code == exit_refused);
+  CHECK_THAT(without.out, Catch::Contains("it cites trees, and none are given"));
+  folder.write("cube.tree", "{\"collisionchip_tree\":1,\"mesh\":\"0000000000000000\",\"order\":[[0,5]]}\n");
+  const auto refuses = [](const std::vector<std::string>& arguments, const std::string& why) {
+    const Outcome refused = run_cchip(arguments);
+    CHECK(refused.code == exit_usage);
+    CHECK_THAT(refused.err, Catch::Contains(why));
+  };
+  refuses({"check", spider_file, cube_file, file, "--poses", poses, "--tree-a", spider, "--tree-b", cube},
+          "cube.tree: tree: it is of another mesh; make it of this mesh with cchip tree");
+  refuses(
+      {"check", spider_file, cube_file, file, "--poses", poses, "--tree-a", spider, "--tree-b", folder.path("none")},
+      "none: the file cannot be read");
+  refuses({"check", spider_file, cube_file, file, "--poses", poses, "--tree-a", spider}, "--tree-b");
+  refuses({"collide", spider_file, cube_file, "--tree-a", spider, "--tree-b", cube}, "--certificate");
+  refuses({"tree", folder.path("none.off"), spider}, "none.off");
+  refuses({"tree", cube_file, cube_file}, "Cube.off");
+}
+
 TEST_CASE("check: what does not hold is refused, the cell and the reason named", "[system][check]") {
   const TemporaryFolder folder;
   const std::string file = folder.path("proof.jsonl");
@@ -143,7 +179,7 @@ TEST_CASE("check: hostile files and wrong options end with a line and exit code 
   refuses_text("\xff\xfe", "certificate, line 1: ");
   refuses_text(std::string("\0\0", 2), "certificate, line 1: ");
   refuses_text(text + "{\"cell\":\"magic\"}\n", "certificate, line 3: unknown word");
-  refuses_text(replaced(text, "certificate\":1", "certificate\":3"),
+  refuses_text(replaced(text, "certificate\":1", "certificate\":4"),
                "line 1: no certificate, or another version of it");
   refuses_text(text + "[1]\n", "certificate, line 3: ");
   refuses({"check", cube_file, cube_file, folder.path("none")}, "none: the file cannot be read");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Trees that certificates cite (docs/cpp/certificates.md): the faces of a mesh in an order, halved again and again, and
-/// the boxes of these sets. A checker trusts nothing of it but the mesh: it makes the boxes itself.
+/// Trees that certificates cite (docs/cpp/certificates.md): the faces of a mesh in an order, halved again and again,
+/// and the boxes of these sets. A checker trusts nothing of it but the mesh: it makes the boxes itself.
 #ifndef CCHIP_CERTIFICATE_TREE_HPP
 #define CCHIP_CERTIFICATE_TREE_HPP
 
@@ -65,7 +65,8 @@ inline void check_order(const std::vector<std::uint32_t>& order, std::size_t cou
 /// A mesh and what all checks of certificates ask about it. Keeps a reference to the mesh.
 class CheckedMesh {
  public:
-  /// \throws std::invalid_argument a face that is neither triangle nor quad or names no vertex, a coordinate that is not
+  /// \throws std::invalid_argument a face that is neither triangle nor quad or names no vertex, a coordinate that is
+  /// not
   ///         finite
   explicit CheckedMesh(const Mesh& mesh) : mesh_(&mesh) {
     using certificate_check::require;

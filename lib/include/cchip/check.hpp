@@ -47,8 +47,7 @@ struct Checker {
 
   /// The greatest value of A minus the least of B along the direction: of its sign alone there is use.
   Int overlap(const Point& direction, const std::array<Faces, 2>& faces) const {
-    return greatest(0, direction, faces[0]) +
-           greatest(1, {-direction[0], -direction[1], -direction[2]}, faces[1]);
+    return greatest(0, direction, faces[0]) + greatest(1, {-direction[0], -direction[1], -direction[2]}, faces[1]);
   }
 
   /// Does the direction keep the faces of A below those of B, as the claim wants it?
@@ -214,8 +213,8 @@ inline CertificateVerdict check(const Sides& sides, const Pose& pose_a, const Po
         require(cell.kind <= CellKind::near && (cell.kind == CellKind::near) == (c.within > 0) && !c.along,
                 "unknown kind of cell");
         const bool single = sets[0].size() == 1 && sets[1].size() == 1;
-        require(!c.all || (single && cell.face_a == (*order[0])[sets[0].begin] &&
-                           cell.face_b == (*order[1])[sets[1].begin]),
+        require(!c.all ||
+                    (single && cell.face_a == (*order[0])[sets[0].begin] && cell.face_b == (*order[1])[sets[1].begin]),
                 "the point of other faces");
         checker.check_point(cell);
         found[{a.number_in_file(cell.face_a), b.number_in_file(cell.face_b)}].insert(cell.kind);

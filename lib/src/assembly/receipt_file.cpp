@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "json_table.hpp"
+#include "mesh_trees.hpp"
 
 namespace cchip::assembly {
 namespace {
@@ -69,6 +70,8 @@ bool are_boxes_apart(const Box& a, const Box& b, double by) {
 }
 
 }  // namespace
+
+std::string tree_file_name(std::uint64_t hash) { return "tree-" + hash_text(hash) + ".jsonl"; }
 
 Receipt receipt_of(const AssemblyPart& a, const AssemblyPart& b) {
   return {a.name, b.name, hash_mesh(a.object.mesh()), hash_mesh(b.object.mesh()), hash_poses(a.pose, b.pose)};

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "mesh_trees.hpp"
 #include "receipt_file.hpp"
 #include "run_all.hpp"
 #include "solid_rays.hpp"
@@ -71,8 +72,13 @@ bool is_short(const Vec3d& p, const Vec3d& q, double d) {
 
 class Verifier {
  public:
-  Verifier(const Assembly& assembly, const RuleBook& rules, const std::string& folder, std::size_t a, std::size_t b)
-      : folder_(folder), a_(assembly.parts[a]), b_(assembly.parts[b]), clearance_(rules.clearance_of(a, b)) {
+  Verifier(const Assembly& assembly, const RuleBook& rules, const std::string& folder, assembly::MeshTrees& trees,
+           std::size_t a, std::size_t b)
+      : folder_(folder),
+        trees_(trees),
+        a_(assembly.parts[a]),
+        b_(assembly.parts[b]),
+        clearance_(rules.clearance_of(a, b)) {
     if (const auto number = rules.rule_of(a, b)) {
       rule_ = &assembly.rules[*number];
       first_in_second_ = rules.is_in_order(*number, a, b);
@@ -120,16 +126,24 @@ class Verifier {
 
   Finding look_at_certificate(const Receipt& receipt) const {
     std::optional<Certificate> c;
+    const CertificateTree* tree_a = nullptr;
+    const CertificateTree* tree_b = nullptr;
     try {
       std::ifstream file(folder_ + "/" + receipt.file, std::ios::binary);
       if (!file) return {ReceiptState::refused, receipt.file + " cannot be read"};
       c = read_certificate(file);
+      if (c->version == 3) {
+        tree_a = &trees_.of(a_.object.mesh());
+        tree_b = &trees_.of(b_.object.mesh());
+      }
     } catch (const std::runtime_error& error) {
       return {ReceiptState::refused, receipt.file + ": " + error.what()};
     }
     Pose pose_b = b_.pose;
     if (receipt.translation) pose_b.translation() = *receipt.translation;
-    const CertificateVerdict verdict = check_certificate(a_.object.mesh(), a_.pose, b_.object.mesh(), pose_b, *c);
+    const CertificateVerdict verdict = tree_a != nullptr
+                                           ? check_certificate(*tree_a, a_.pose, *tree_b, pose_b, *c)
+                                           : check_certificate(a_.object.mesh(), a_.pose, b_.object.mesh(), pose_b, *c);
     if (!verdict.accepted) return {ReceiptState::refused, receipt.file + ": " + verdict.reason};
     if (!receipt.translation) return look_at_claim(*c);
     if (kind_ != RuleKind::overlap || !is_short(*receipt.translation, b_.pose.translation(), rule_->limit)) {
@@ -184,6 +198,7 @@ class Verifier {
   }
 
   const std::string& folder_;
+  assembly::MeshTrees& trees_;
   const AssemblyPart& a_;
   const AssemblyPart& b_;
   double clearance_;
@@ -228,6 +243,12 @@ ReceiptReport verify_receipts(const Assembly& assembly, const std::string& folde
   ReceiptReport report;
   report.by_boxes = to_prove.by_boxes;
   report.pairs.resize(to_prove.pairs.size());
+  assembly::MeshTrees trees([&](const Mesh& mesh) {
+    const std::string name = assembly::tree_file_name(hash_mesh(mesh));
+    std::ifstream file(folder + "/" + name, std::ios::binary);
+    if (!file) throw std::runtime_error(name + " cannot be read");
+    return read_certificate_tree(mesh, file);
+  });
   assembly::run_all(report.pairs.size(), threads, [&](std::size_t i) {
     CheckedReceipt& pair = report.pairs[i];
     std::tie(pair.a, pair.b) = to_prove.pairs[i];
@@ -235,7 +256,8 @@ ReceiptReport verify_receipts(const Assembly& assembly, const std::string& folde
     const std::string& name_b = assembly.parts[pair.b].name;
     const auto found = receipts.find({name_a, name_b});
     Finding finding = {ReceiptState::missing, "there is no receipt"};
-    if (found != receipts.end()) finding = Verifier(assembly, rules, folder, pair.a, pair.b).look_at(found->second);
+    if (found != receipts.end())
+      finding = Verifier(assembly, rules, folder, trees, pair.a, pair.b).look_at(found->second);
     pair.state = finding.state;
     const bool is_sentence = pair.state == ReceiptState::proved || pair.state == ReceiptState::violation;
     pair.text = name_a + " and " + name_b + (is_sentence ? " " : ": ") + finding.text;

@@ -8,10 +8,13 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
 
+#include "mesh_trees.hpp"
 #include "parting_way.hpp"
 #include "receipt_file.hpp"
 #include "run_all.hpp"
@@ -85,11 +88,13 @@ std::optional<Vec3d> find_common_point(const AssemblyPart& a, const AssemblyPart
 /// Makes the proof of a pair's verdict, as far as there is one.
 class Prover {
  public:
-  Prover(const Assembly& assembly, const RuleBook& rules, std::size_t a, std::size_t b, std::size_t most_normals)
+  Prover(const Assembly& assembly, const RuleBook& rules, std::size_t a, std::size_t b, std::size_t most_normals,
+         assembly::MeshTrees& trees)
       : a_(assembly.parts[a]),
         b_(assembly.parts[b]),
         clearance_(rules.clearance_of(a, b)),
         most_(most_normals),
+        trees_{&trees.of(a_.object.mesh()), &trees.of(b_.object.mesh())},
         receipt(assembly::receipt_of(a_, b_)) {
     if (const auto number = rules.rule_of(a, b)) rule_ = &assembly.rules[*number];
   }
@@ -98,9 +103,10 @@ class Prover {
     const RuleKind kind = rule_ != nullptr ? rule_->kind : RuleKind::nothing;
     const bool are_solids = a_.object.is_closed() && b_.object.is_closed();
     if (kind == RuleKind::inside || pair.verdict == PairVerdict::apart || pair.verdict == PairVerdict::too_near) {
-      certificate = clearance_ > 0 ? certify_below(query(), clearance_) : certify(query(), all_contacts(false));
+      certificate = clearance_ > 0 ? certify_below(query(), clearance_, CollisionRequest::Contacts::first, trees_)
+                                   : certify(query(), all_contacts(false), trees_);
     } else if (pair.verdict == PairVerdict::touching && pair.is_violation) {
-      certificate = certify(query());
+      certificate = certify(query(), {}, trees_);
     } else if (!pair.is_violation && kind == RuleKind::overlap && pair.way) {
       prove_parted(*pair.way, are_solids);
     } else if (!pair.is_violation && pair.verdict == PairVerdict::touching) {
@@ -108,7 +114,7 @@ class Prover {
     } else if (are_solids) {
       receipt.common_point = find_common_point(a_, b_);
     } else {
-      certificate = certify(query(), all_contacts(true));
+      certificate = certify(query(), all_contacts(true), trees_);
     }
   }
 
@@ -126,11 +132,11 @@ class Prover {
     const std::vector<Vec3d> normals = assembly::normals_of_contacts(a_, b_);
     for (std::size_t i = 0; i < std::min(most_, normals.size()); ++i) {
       for (const double sign : {1.0, -1.0}) {
-        certificate = certify_clear_along(query(), sign * normals[i]);
+        certificate = certify_clear_along(query(), sign * normals[i], trees_);
         if (certificate) return;
       }
     }
-    if (!are_solids) certificate = certify(query(), all_contacts(true));
+    if (!are_solids) certificate = certify(query(), all_contacts(true), trees_);
   }
   /// The same where a translation has parted them.
   void prove_parted(const PartingWay& way, bool are_solids) {
@@ -138,8 +144,8 @@ class Prover {
     moved.translation() += way.depth * way.direction;
     receipt.translation = moved.translation();
     const CollisionQuery there = {&a_.object, &a_.pose, &b_.object, &moved};
-    certificate = certify_clear_along(there, way.direction);
-    if (!certificate) certificate = certify(there, all_contacts(!are_solids));
+    certificate = certify_clear_along(there, way.direction, trees_);
+    if (!certificate) certificate = certify(there, all_contacts(!are_solids), trees_);
   }
 
   const AssemblyPart& a_;
@@ -147,6 +153,7 @@ class Prover {
   const AssemblyRule* rule_ = nullptr;
   double clearance_;
   std::size_t most_;
+  CitedTrees trees_;
 
  public:
   Receipt receipt;
@@ -167,6 +174,9 @@ void prepare(const std::string& folder) {
   fs::remove(folder + "/" + assembly::receipt_index);
   for (const Receipt& receipt : old) {
     if (!receipt.file.empty()) fs::remove(folder + "/" + receipt.file);
+    for (const std::uint64_t mesh : {receipt.mesh_a, receipt.mesh_b}) {
+      fs::remove(folder + "/" + assembly::tree_file_name(mesh));
+    }
   }
 }
 
@@ -174,6 +184,15 @@ std::string file_name(std::size_t number) {
   constexpr std::size_t digits = 6;
   const std::string text = std::to_string(number);
   return std::string(digits - std::min(digits, text.size()), '0') + text + ".jsonl";
+}
+
+/// \param write takes the stream
+template <class Write>
+void write_file(const std::string& path, const Write& write) {
+  std::ofstream file(path, std::ios::binary);
+  write(file);
+  file.close();
+  if (!file) throw std::runtime_error(path + ": cannot be written; check the disk and the rights of the folder");
 }
 
 }  // namespace
@@ -184,6 +203,9 @@ void write_receipts(const Assembly& assembly, const AssemblyReport& report, cons
   prepare(folder);
   const assembly::PairsToProve to_prove = assembly::pairs_to_prove(assembly, rules);
   std::vector<Receipt> receipts(to_prove.pairs.size());
+  assembly::MeshTrees trees(make_certificate_tree);
+  std::map<std::uint64_t, const Mesh*> cited;  // by hashes
+  std::mutex mutex;
   assembly::run_all(receipts.size(), options.threads, [&](std::size_t i) {
     AssemblyPair pair;
     std::tie(pair.a, pair.b) = to_prove.pairs[i];
@@ -191,18 +213,26 @@ void write_receipts(const Assembly& assembly, const AssemblyReport& report, cons
         std::lower_bound(report.pairs.begin(), report.pairs.end(), pair,
                          [](const auto& x, const auto& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
     if (found != report.pairs.end() && found->a == pair.a && found->b == pair.b) pair = *found;
-    Prover prover(assembly, rules, pair.a, pair.b, options.most_normals);
+    Prover prover(assembly, rules, pair.a, pair.b, options.most_normals, trees);
     prover.prove(pair);
     if (prover.certificate) {
       prover.receipt.file = file_name(i + 1);
-      const std::string path = folder + "/" + prover.receipt.file;
-      std::ofstream file(path, std::ios::binary);
-      write_certificate(*prover.certificate, file);
-      file.close();
-      if (!file) throw std::runtime_error(path + ": cannot be written; check the disk and the rights of the folder");
+      write_file(folder + "/" + prover.receipt.file,
+                 [&](std::ostream& out) { write_certificate(*prover.certificate, out); });
+      if (prover.certificate->version == 3) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        for (const std::size_t part : {pair.a, pair.b}) {
+          const Mesh& mesh = assembly.parts[part].object.mesh();
+          cited.emplace(trees.of(mesh).hash(), &mesh);
+        }
+      }
     }
     receipts[i] = std::move(prover.receipt);
   });
+  for (const auto& [hash, mesh] : cited) {
+    write_file(folder + "/" + assembly::tree_file_name(hash),
+               [&, mesh = mesh](std::ostream& out) { write_certificate_tree(trees.of(*mesh), out); });
+  }
   assembly::write_receipt_index(folder, receipts);
 }
 

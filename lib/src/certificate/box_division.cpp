@@ -70,7 +70,8 @@ int BoxDivision::rise(const Vec3d& direction) const {
 void BoxDivision::make_directions() {
   std::array<std::array<Vec3d, 3>, 2> edges, normals;
   for (const std::size_t side : {0U, 1U}) {
-    for (Eigen::Index i = 0; i < 3; ++i) edges[side][static_cast<std::size_t>(i)] = linear_[side].col(i).stableNormalized();
+    for (Eigen::Index i = 0; i < 3; ++i)
+      edges[side][static_cast<std::size_t>(i)] = linear_[side].col(i).stableNormalized();
     for (std::size_t i = 0; i < 3; ++i) normals[side][i] = edges[side][(i + 1) % 3].cross(edges[side][(i + 2) % 3]);
   }
   std::vector<Vec3d> wanted(normals[0].begin(), normals[0].end());
@@ -102,7 +103,7 @@ void BoxDivision::make_directions() {
 
 CertificateTree::Box BoxDivision::box_of(std::size_t side, const CertificateTree::Set& set) const {
   return set.size() > CertificateTree::most_faces_without_box ? trees_[side]->box(set)
-                                                               : trees_[side]->box_of_vertices(set);
+                                                              : trees_[side]->box_of_vertices(set);
 }
 
 BoxDivision::Node BoxDivision::node(std::size_t side, const CertificateTree::Set& set) const {
@@ -179,8 +180,7 @@ Vec3d BoxDivision::extreme(std::size_t side, const Hull& hull, const Vec3d& dire
   return linear_[side] * ((*best)[0] + way) + shift_[side];
 }
 
-void BoxDivision::part_along(const Vec3d& direction, const Hull& a, const Hull& b,
-                             std::vector<Proposal>& found) const {
+void BoxDivision::part_along(const Vec3d& direction, const Hull& a, const Hull& b, std::vector<Proposal>& found) const {
   if (direction.isZero(0)) return;
   const double least = (1 + 0x1p-40) * within_ * direction.norm();
   for (const double sign : {1.0, -1.0}) {

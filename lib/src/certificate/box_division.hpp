@@ -80,7 +80,7 @@ class BoxDivision {
   double within_;
   std::optional<certificate_check::Point> along_;
   double scale_ = 0;  ///< no coordinate of either side is greater, and no sum of products that makes one
-  std::array<Vec3d, count> direction_;  ///< of integers
+  std::array<Vec3d, count> direction_;                          ///< of integers
   std::array<std::array<std::vector<Digits>, 2>, count> text_;  ///< of each and its opposite
   std::array<std::array<bool, 2>, count> may_rise_;
   std::array<Lanes, 3> components_;

@@ -316,8 +316,9 @@ class Maker {
   }
   CertificateCell pair(std::uint32_t face_a, std::uint32_t face_b) const {
     const std::array<std::vector<Point>, 2> points = points_of(face_a, face_b);
-    CertificateCell cell = request_.within > 0 ? prove_distance(points[0], points[1], checker_.placement.length(), checker_.below)
-                                               : prove_pair(points[0], points[1], request_.tells_relation());
+    CertificateCell cell = request_.within > 0
+                               ? prove_distance(points[0], points[1], checker_.placement.length(), checker_.below)
+                               : prove_pair(points[0], points[1], request_.tells_relation());
     cell.face_a = face_a;
     cell.face_b = face_b;
     return cell;
@@ -358,8 +359,7 @@ class Maker {
   std::array<std::vector<Vec3d>, 2> rounded_points(double& within) const {
     const Point origin = checker_.corner(1, 0, 0);
     unsigned bits = 0;
-    std::array<std::vector<Point>, 2> relative =
-        certificate_check::posed_vertices(checker_.placement, checker_.mesh);
+    std::array<std::vector<Point>, 2> relative = certificate_check::posed_vertices(checker_.placement, checker_.mesh);
     for (const std::size_t side : {0U, 1U}) {
       for (Point& p : relative[side]) {
         for (std::size_t i = 0; i < 3; ++i) {
