@@ -7,8 +7,8 @@
 CHECKED: the program cchip-checked; CCHIP: the command cchip. N certificates of contacts and distances are made, some
 with trees of the meshes, and each is changed once, some to claims of `below` and of translations. The last line counts
 the accepted ones of each kind: `trees` cite trees, and of these `boxes` have a cell `separated` of a set with boxes.
-Every EVERY-th case (100) also goes to `cchip check`, which is a process for each. After SECONDS it ends with what it has
-reached. CCHIP_SEED repeats a run."""
+Every EVERY-th case (100) also goes to `cchip check`, which is a process for each. After SECONDS it ends with what it
+has reached. CCHIP_SEED repeats a run."""
 import fractions
 import json
 import math
