@@ -4,10 +4,11 @@
 
     campaign.py CHECKED CCHIP N [EVERY [SECONDS]]
 
-CHECKED: the program cchip-checked; CCHIP: the command cchip. N certificates of contacts and distances are made, and
-each is changed once, some to claims of `below` and of translations; the last line counts the accepted ones of each
-kind. Every EVERY-th case (100) also goes to `cchip check`, which is a process for each. After SECONDS it ends with what
-it has reached. CCHIP_SEED repeats a run."""
+CHECKED: the program cchip-checked; CCHIP: the command cchip. N certificates of contacts and distances are made, some
+with trees of the meshes, and each is changed once, some to claims of `below` and of translations. The last line counts
+the accepted ones of each kind: `trees` cite trees, and of these `boxes` have a cell `separated` of a set with boxes.
+Every EVERY-th case (100) also goes to `cchip check`, which is a process for each. After SECONDS it ends with what it
+has reached. CCHIP_SEED repeats a run."""
 import fractions
 import json
 import math
@@ -27,17 +28,18 @@ IDENTITY = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]
 COLUMNS = ["r00", "r01", "r02", "tx", "r10", "r11", "r12", "ty", "r20", "r21", "r22", "tz"]
 
 
-def random_mesh(rng, parallel):
+def random_mesh(rng, parallel, large=False):
     """Vertices and faces: triangles, parallelograms, warped quads and degenerate ones, on a coarse grid or not; or on
-    the grid and parallel to the axes."""
+    the grid and parallel to the axes. Large: of more than 32 faces, so that sets of its tree have boxes."""
     step = rng.choice([1.0, 0.5] if parallel else [1.0, 0.5, 2.0**-20, 1e-3, 2.0**60])
     grid = lambda n: step * rng.randint(-n, n) if rng.random() < 0.9 else step * rng.uniform(-n, n)
     vertices, faces = [], []
-    for _ in range(rng.randint(1, 7)):
+    reach = 9 if large else 3
+    for _ in range(rng.randint(33, 80) if large else rng.randint(1, 7)):
         first = len(vertices)
-        p, u, v = ([grid(n) for _ in range(3)] for n in (3, 2, 2))
+        p, u, v = ([grid(n) for _ in range(3)] for n in (reach, 2, 2))
         if parallel:
-            p, axes = [step * rng.randint(-3, 3) for _ in range(3)], rng.sample(range(3), 2)
+            p, axes = [step * rng.randint(-reach, reach) for _ in range(3)], rng.sample(range(3), 2)
             u, v = ([step * rng.choice([-2, -1, 1, 2]) * (i == axis) for i in range(3)] for axis in axes)
         corners = [p, [a + b for a, b in zip(p, u)], [a + b + c for a, b, c in zip(p, u, v)],
                    [a + c for a, c in zip(p, v)]]
@@ -180,7 +182,7 @@ def measure_otherwise(rng, lines):
         kind = rng.randrange(4) if distance else 0
         claim["below" if kind else "within"] = change_value(rng, distance) if kind == 1 else distance or 1.0
     if "within" in claim or rng.random() < 0.95:
-        claim["collisionchip_certificate"] = rng.choice([2] * 20 + [1])
+        claim["collisionchip_certificate"] = rng.choice([3 if "tree_a" in claim else 2] * 20 + [1])
     return [json.dumps(line, separators=(",", ":")) for line in [claim, *cells]]
 
 
@@ -189,7 +191,7 @@ def part_near(rng, lines, meshes, poses):
     claim, cells = json.loads(lines[0]), [json.loads(line) for line in lines[1:]]
     if "within" not in claim or not claim["all"]:
         return move_near(rng, lines)
-    corners = [check.placed(m[0], p) for m, p in zip(meshes, (poses[:12], poses[12:]))]
+    corners = [check.Posed(m[0], p) for m, p in zip(meshes, (poses[:12], poses[12:]))]
     square = fractions.Fraction(claim["within"])**2
     near = [cell for cell in cells if cell["cell"] == "near"]
     one = rng.choice(near) if near and rng.random() < 0.2 else None
@@ -225,7 +227,7 @@ def move_near(rng, lines):
         claim[key] = change_value(rng, claim[key])
     else:
         claim[rng.choice(["within", "below", "along"])] = rng.choice([1.0, None, [1.0, 0.0, 0.0]])
-        claim["collisionchip_certificate"] = rng.choice([1, 2])
+        claim["collisionchip_certificate"] = rng.choice([1, 2, 3])
     return [json.dumps(line, separators=(",", ":")) for line in [claim, *cells]]
 
 
@@ -237,45 +239,120 @@ def with_hashes(lines, meshes, poses):
     return [json.dumps(claim, separators=(",", ":")), *lines[1:]]
 
 
-def accepted_by_python(data, meshes, poses):
-    """The claim of the last certificate, or None."""
+def regroup(rng, lines):
+    """With trees: one cell for two halves, or two halves in the place of one cell."""
+    lines, kinds = list(lines), [None, *(json.loads(line)["cell"] for line in lines[1:])]
+    whole = [n for n in range(1, len(lines)) if kinds[n] == "separated"]
+    halved = [n for n in whole[:-1] if kinds[n - 1] in ("split_a", "split_b") and kinds[n + 1] == "separated"]
+    if halved and rng.random() < 0.7:
+        n = rng.choice(halved)
+        lines[n - 1:n + 2] = [rng.choice(lines[n:n + 2])]
+    elif whole:
+        n = rng.choice(whole)
+        lines[n:n + 1] = [json.dumps({"cell": rng.choice(["split_a", "split_b"])}), lines[n], lines[n]]
+    return lines
+
+
+def write_tree(mesh, order):
+    return (json.dumps({"collisionchip_tree": 1, "mesh": mesh, "order": order}) + "\n").encode()
+
+
+def change_tree(rng, lines, trees):
+    """Another tree, which the certificate cites or not."""
+    trees, side, kind = list(trees), rng.randrange(2), rng.random()
+    if kind < 0.1:
+        return lines, [] if kind < 0.05 else trees[::-1]
+    if kind < 0.4:
+        trees[side] = change_lines(rng, [trees[side].decode().rstrip("\n")])
+        return lines, trees
+    mesh, order = check.read_tree(trees[side].decode())
+    i, k = rng.randrange(len(order)), rng.randrange(len(order))
+    if kind < 0.8:
+        order[i], order[k] = order[k], order[i]
+    else:
+        order[i:i + rng.randrange(2)] = [order[k]]
+    claim = json.loads(lines[0])
+    claim["tree_" + "ab"[side]] = check.hash_tree(mesh, order)
+    trees[side] = write_tree(mesh, order)
+    return [json.dumps(claim, separators=(",", ":")), *lines[1:]], trees
+
+
+def make_trees(rng, cchip, names):
+    """Those of the command, some with the faces in another order; None if it cuts faces."""
+    trees = []
+    for name in names:
+        path = name.with_suffix(".tree")
+        run = subprocess.run([cchip, "tree", name, path], stderr=subprocess.PIPE, text=True, check=True)
+        if "were cut" in run.stderr:
+            return None
+        if rng.random() < 0.3:
+            mesh, order = check.read_tree(path.read_text())
+            rng.shuffle(order)
+            path.write_bytes(write_tree(mesh, order))
+        trees.append(path.read_bytes())
+    return trees
+
+
+def uses_boxes(lines, meshes):
+    """Of cells that are accepted: is one `separated` of a set of more than 32 faces?"""
+    todo = [[len(m[1]) for m in meshes]]
+    for kind in (json.loads(line)["cell"] for line in lines[1:]):
+        sets = todo.pop()
+        if kind in ("split_a", "split_b"):
+            side = kind == "split_b"
+            halves = (sets[side] + 1) // 2, sets[side] // 2
+            todo += [[sets[0], n] if side else [n, sets[1]] for n in halves]
+        elif kind == "separated" and max(sets) > 32:
+            return True
+    return False
+
+
+def accepted_by_python(data, meshes, poses, trees):
+    """The claim of the last certificate, or None, and whether it uses boxes."""
     try:
-        claim = None
+        claim, trees = None, [check.read_tree(tree.decode()) for tree in trees]
         for lines in check.split(data.decode()):
-            claim = check.check(meshes, poses, lines)
-        return claim
-    except (check.Refused, UnicodeDecodeError):
-        return None
+            claim = check.check(meshes, poses, lines, trees)
+        return claim, bool(claim) and claim["collisionchip_certificate"] == 3 and uses_boxes(lines, meshes)
+    except (check.Refused, ValueError, KeyError, TypeError, RecursionError, OverflowError):
+        return None, False
 
 
 class Campaign:
     def __init__(self, checked, cchip, every, folder):
         self.checked, self.cchip, self.every, self.folder = checked, cchip, every, folder
         self.cases = []
-        self.counts = dict.fromkeys(["certificates", "changed", "accepted", "within", "below", "along",
-                                     "refused", "cchip", "differences"], 0)
+        self.counts = dict.fromkeys(["certificates", "changed", "accepted", "within", "below", "along", "trees",
+                                     "boxes", "refused", "cchip", "differences"], 0)
 
-    def add(self, names, meshes, pose, data, changed):
+    def add(self, names, meshes, pose, data, changed, trees):
         path = self.folder / f"{len(self.cases)}.jsonl"
         path.write_bytes(data)
-        claim = accepted_by_python(data, meshes, IDENTITY + pose)
-        self.cases.append((names, pose, path, changed, claim is not None))
+        files = [path.with_suffix(".tree_" + side) for side, _ in zip("ab", trees)]
+        for file, tree in zip(files, trees):
+            file.write_bytes(tree)
+        claim, boxes = accepted_by_python(data, meshes, IDENTITY + pose, trees)
+        self.cases.append((names, pose, path, files, changed, claim is not None))
+        self.counts["trees"] += claim is not None and claim["collisionchip_certificate"] == 3
+        self.counts["boxes"] += boxes
         for key in {"within", "below", "along"} & (claim or {}).keys():
             self.counts[key] += 1
         self.counts["changed" if changed else "certificates"] += 1
 
     def compare(self):
         numbers = lambda pose: ",".join(map(repr, pose))
-        lines = ["\t".join([*map(str, names), str(path), numbers(pose)]) for names, pose, path, _, _ in self.cases]
+        lines = ["\t".join(map(str, [*names, path, numbers(pose), *files]))
+                 for names, pose, path, files, *_ in self.cases]
         (self.folder / "list").write_text("".join(line + "\n" for line in lines))
         run = subprocess.run([self.checked, "--batch", self.folder / "list"], stdout=subprocess.PIPE, text=True,
                              check=True)
         verdicts = run.stdout.splitlines()
         assert len(verdicts) == len(self.cases), "a verdict for each case"
-        for n, ((names, pose, path, changed, python), verdict) in enumerate(zip(self.cases, verdicts)):
+        for n, ((names, pose, path, files, changed, python), verdict) in enumerate(zip(self.cases, verdicts)):
             answers = {"cchip-checked": verdict == "accepted", "check.py": python}
             if n % self.every == 0:
-                command = [self.cchip, "check", *names, path, "--pose-matrix=" + numbers(pose)]
+                command = [self.cchip, "check", *names, path, "--pose-matrix=" + numbers(pose),
+                           *(f"--tree-{side}={file}" for side, file in zip("ab", files))]
                 code = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode
                 answers["cchip check"] = code == 0
                 self.counts["cchip"] += 1
@@ -287,7 +364,8 @@ class Campaign:
             if len(set(answers.values())) != 1 or (not changed and not python):
                 self.counts["differences"] += 1
                 print(f"{answers}, {verdict}, pose {pose}\n"
-                      f"{names[0].read_text()}{names[1].read_text()}{path.read_bytes()!r}")
+                      f"{names[0].read_text()}{names[1].read_text()}{path.read_bytes()!r}",
+                      *(file.read_bytes() for file in files), sep="\n")
         self.cases = []
 
 
@@ -302,9 +380,14 @@ def main(checked, cchip, count, every="100", seconds="inf"):
             pair += 1
             names = [folder / f"{pair}a.off", folder / f"{pair}b.off"]
             parallel = rng.random() < 0.3
-            meshes = [random_mesh(rng, parallel), random_mesh(rng, parallel)]
+            cites = rng.random() < 0.4
+            large = rng.choice([(1, 0), (0, 1), (1, 1)]) if cites and rng.random() < 0.3 else (0, 0)
+            meshes = [random_mesh(rng, parallel, is_large) for is_large in large]
             for name, mesh in zip(names, meshes):
                 write_off(name, mesh)
+            trees = make_trees(rng, cchip, names) if cites else []
+            if trees is None:
+                continue
             scale = rng.choice([abs(x) or 1.0 for x in meshes[0][0][0]])
             poses = [random_pose(rng, scale / 2) for _ in range(min(20, count - campaign.counts["certificates"]))]
             rows = [",".join(COLUMNS), *(",".join(map(repr, p)) for p in poses)]
@@ -313,7 +396,8 @@ def main(checked, cchip, count, every="100", seconds="inf"):
             options = ["--contacts", rng.choice(["first", "all"]),
                        *rng.choice([[], ["--relation"], ["--counts", "crossing"], *[["--within", repr(distance)]] * 3])]
             command = [cchip, "collide", *names, "--poses", folder / "poses.csv", *options,
-                       "--certificate", folder / "made"]
+                       "--certificate", folder / "made",
+                       *(f"--tree-{side}={name.with_suffix('.tree')}" for side, name in zip("ab", names) if cites)]
             run = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
             if run.returncode != 0:
                 sys.exit(f"{command}: exit code {run.returncode}\n{run.stderr}")
@@ -321,9 +405,15 @@ def main(checked, cchip, count, every="100", seconds="inf"):
                 continue  # faces with a dent are several parts, which check.py does not cut
             certificates = check.split((folder / "made").read_text())
             for pose, lines in zip(poses, certificates):
-                campaign.add(names, meshes, pose, ("\n".join(lines) + "\n").encode(), False)
-                kind, within = rng.random(), "--within" in options
-                if within and kind < 0.15:
+                campaign.add(names, meshes, pose, ("\n".join(lines) + "\n").encode(), False, trees)
+                kind, within, given = rng.random(), "--within" in options, trees
+                if "tree_a" in lines[0] and rng.random() < 0.4:
+                    if rng.random() < 0.6:
+                        lines = regroup(rng, lines)
+                    else:
+                        lines, given = change_tree(rng, lines, trees)
+                    data = ("\n".join(lines) + "\n").encode()
+                elif within and kind < 0.15:
                     data = ("\n".join(part_near(rng, lines, meshes, IDENTITY + pose)) + "\n").encode()
                 elif within and kind < 0.25:
                     data = ("\n".join(move_near(rng, lines)) + "\n").encode()
@@ -336,7 +426,7 @@ def main(checked, cchip, count, every="100", seconds="inf"):
                     data = ("\n".join(with_hashes(lines, meshes, IDENTITY + pose)) + "\n").encode()
                 else:
                     data = change_lines(rng, lines)
-                campaign.add(names, meshes, pose, data, True)
+                campaign.add(names, meshes, pose, data, True, given)
             if len(campaign.cases) >= 2000:
                 campaign.compare()
         campaign.compare()

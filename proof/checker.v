@@ -219,12 +219,18 @@ Fixpoint grow (levels : nat) (n : Z) (ps : list part) : option (tree * list part
 
 Definition eight (low high : triple Z) : list (triple Z) :=
   flat_map (fun u => flat_map (fun v => [Triple u v (z low); Triple u v (z high)]) [y low; y high]) [x low; x high].
-(** Points whose hull holds all corners of the parts. *)
-Definition outer (g : group) : list (triple Z) :=
-  match g with
-  | Tree (Node size low high _ _) => if 4 <? size then eight low high else flat_map corners (parts g)
-  | _ => flat_map corners (parts g)
+(** Points whose hull holds all corners of a tree: for each part after [halvings] of them the corners of its box, or, if
+    it has at most four leaves, all corners of these. *)
+Fixpoint outer_tree (halvings : nat) (t : tree) {struct t} : list (triple Z) :=
+  match t with
+  | Leaf p => corners p
+  | Node size low high a b =>
+    if 4 <? size
+    then match halvings with O => eight low high | S fewer => outer_tree fewer a ++ outer_tree fewer b end
+    else flat_map corners (leaves t)
   end.
+Definition outer (g : group) : list (triple Z) :=
+  match g with Places _ ps => flat_map corners ps | Tree t => outer_tree 3 t end.
 
 (** The first n of a list, in reverse before [taken], and the rest. *)
 Fixpoint cut {T} (n : Z) (taken rest : list T) : list T * list T :=

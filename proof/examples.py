@@ -15,10 +15,18 @@ import tempfile
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "lib/python/src/collisionchip"))
 import check  # noqa: E402
 
-# An octahedron of eight faces: along (1, 1, 1) it ends at 1 and its box at 3. Faces 0 to 3 are its upper half.
+# An octahedron of eight faces: along (1, 1, 1) it ends at 1, the box of face 0 at 3. Faces 0 to 3 are its upper half.
 OCTAHEDRON = ([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]],
               [[i, (i + 1) % 4, top] for top in (4, 5) for i in range(4)])
-FIVE = (OCTAHEDRON[0], OCTAHEDRON[1][:5])
+
+
+def repeated(times, last=0):
+    """The octahedron with each face several times, face 0 last and more often. Of 32 faces the eight parts have four
+    each, and so no boxes; of 33 faces the last part has five, all of them face 0."""
+    return OCTAHEDRON[0], [f for f in reversed(OCTAHEDRON[1]) for _ in range(times)] + OCTAHEDRON[1][:1] * last
+
+
+FOLD = repeated(5)
 TWO = ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [5, 0, 0], [6, 0, 0], [5, 1, 0]], [[0, 1, 2], [3, 4, 5]])
 THREE = ([*TWO[0], [10, 0, 0], [11, 0, 0], [10, 1, 0]], [*TWO[1], [6, 7, 8]])
 TURNED = [1, -1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0]  # the box of an octahedron reaches -2 along x, its vertices -1
@@ -51,23 +59,27 @@ def keys(cells, **of_all):
 
 # name, mesh, pose, cells, other than usual (keys of the claim; order: that of the tree of A), what is printed
 CASES = [
-    ("far", OCTAHEDRON, at(3, 0, 0), [FAR], {}, "accepted"),
-    ("boxes that touch", OCTAHEDRON, at(2, 0, 0), [FAR], {}, "refused: cell 0: it does not hold"),
-    ("boxes that overlap", OCTAHEDRON, at(.9, .9, .9), [DIAGONAL], {}, "refused: cell 0: it does not hold"),
-    ("four faces have no box", OCTAHEDRON, at(.9, .9, .9), HALVES, {}, "accepted"),
-    ("five faces have a box", FIVE, at(.9, .9, .9), [DIAGONAL], {}, "refused: cell 0: it does not hold"),
-    ("the upper half first", OCTAHEDRON, at(0, 0, 1.5), [A, separated(0, 0, 1)], {}, "refused: cell 1: it does not hold"),
+    ("far", FOLD, at(3, 0, 0), [FAR], {}, "accepted"),
+    ("boxes that touch", FOLD, at(2, 0, 0), [FAR], {}, "refused: cell 0: it does not hold"),
+    ("boxes that overlap", FOLD, at(.9, .9, .9), [DIAGONAL], {}, "refused: cell 0: it does not hold"),
+    ("halves of 20 faces have no box", FOLD, at(.9, .9, .9), HALVES, {}, "accepted"),
+    ("32 faces have no box", repeated(4), at(.9, .9, .9), [DIAGONAL], {}, "accepted"),
+    ("33 faces have a box", repeated(4, 1), at(.9, .9, .9), [DIAGONAL], {}, "refused: cell 0: it does not hold"),
+    ("33 faces backwards", repeated(4, 1), at(.9, .9, .9), [DIAGONAL], {"order": range(32, -1, -1)},
+     "accepted"),
+    ("the upper half first", OCTAHEDRON, at(0, 0, 1.5), [A, separated(0, 0, 1)], {},
+     "refused: cell 1: it does not hold"),
     ("the lower half first", OCTAHEDRON, at(0, 0, 1.5), [A, separated(0, 0, 1)], {"order": [4, 5, 6, 7, 0, 1, 2, 3]},
      "refused: cell 2: it does not hold"),
     ("a cell is missing", OCTAHEDRON, at(.9, .9, .9), HALVES[:-1], {}, "refused: cell 6"),
     ("a place of a split is not read", OCTAHEDRON, at(.9, .9, .9), keys(HALVES, at=1), {}, "accepted"),
-    ("the box is posed", OCTAHEDRON, at(2.5, 0, 0, TURNED), [FAR], {}, "refused: cell 0: it does not hold"),
-    ("the posed box is apart", OCTAHEDRON, at(3.5, 0, 0, TURNED), [FAR], {}, "accepted"),
-    ("within", OCTAHEDRON, at(3, 0, 0), [FAR], {"within": 0.5}, "accepted"),
-    ("within the gap", OCTAHEDRON, at(3, 0, 0), [FAR], {"within": 1}, "refused: cell 0: it does not hold"),
-    ("below the gap", OCTAHEDRON, at(3, 0, 0), [FAR], {"below": 1}, "accepted"),
-    ("along", OCTAHEDRON, at(2, 0, 0), [FAR], {"along": [1, 9, 0]}, "accepted"),
-    ("along, back", OCTAHEDRON, at(2, 0, 0), [FAR], {"along": [-1, 9, 0]}, "refused: cell 0: it does not hold"),
+    ("the box is posed", FOLD, at(2.5, 0, 0, TURNED), [FAR], {}, "refused: cell 0: it does not hold"),
+    ("the posed box is apart", FOLD, at(3.5, 0, 0, TURNED), [FAR], {}, "accepted"),
+    ("within", FOLD, at(3, 0, 0), [FAR], {"within": 0.5}, "accepted"),
+    ("within the gap", FOLD, at(3, 0, 0), [FAR], {"within": 1}, "refused: cell 0: it does not hold"),
+    ("below the gap", FOLD, at(3, 0, 0), [FAR], {"below": 1}, "accepted"),
+    ("along", FOLD, at(2, 0, 0), [FAR], {"along": [1, 9, 0]}, "accepted"),
+    ("along, back", FOLD, at(2, 0, 0), [FAR], {"along": [-1, 9, 0]}, "refused: cell 0: it does not hold"),
     ("pairs", TWO, at(0, 0, 0), PAIRS, {"contacts": BOTH}, "accepted"),
     ("pairs within", TWO, at(0, 0, 1), NEAR, {"contacts": BOTH, "within": 1}, "accepted"),
     ("three faces are one and two", THREE, at(3.5, 0, 0), [A, FAR, B, BACK, A, FAR, B, BACK, FAR], {}, "accepted"),
@@ -78,9 +90,12 @@ CASES = [
     ("a face twice", TWO, at(0, 0, 0), PAIRS, {"contacts": BOTH, "order": [0, 0]}, "refused: cell 0: an order"),
     ("a face too few", TWO, at(0, 0, 0), PAIRS, {"contacts": BOTH, "order": [0]}, "refused: cell 0: an order"),
     ("a face too many", TWO, at(0, 0, 0), PAIRS, {"contacts": BOTH, "order": [0, 1, 2]}, "refused: cell 0: an order"),
-    ("another tree", TWO, at(0, 0, 0), PAIRS, {"contacts": BOTH, "tree_a": "0" * 16}, "refused: cell 0: the certificate cites"),
-    ("a tree of another mesh", TWO, at(0, 0, 0), PAIRS, {"contacts": BOTH, "of": OCTAHEDRON}, "refused: cell 0: a tree is of"),
-    ("one contact", TWO, at(0, 0, 0), [PAIRS[2]], {"contacts": BOTH[:1], "all": False}, "refused: claim: a certificate of"),
+    ("another tree", TWO, at(0, 0, 0), PAIRS, {"contacts": BOTH, "tree_a": "0" * 16},
+     "refused: cell 0: the certificate cites"),
+    ("a tree of another mesh", TWO, at(0, 0, 0), PAIRS, {"contacts": BOTH, "of": OCTAHEDRON},
+     "refused: cell 0: a tree is of"),
+    ("one contact", TWO, at(0, 0, 0), [PAIRS[2]], {"contacts": BOTH[:1], "all": False},
+     "refused: claim: a certificate of"),
     ("version 1", TWO, at(0, 0, 0), PAIRS, {"collisionchip_certificate": 1}, "malformed: no key at"),
     ("no trees are given", TWO, at(0, 0, 0), PAIRS, {"given": False}, "malformed: the certificate cites trees"),
 ]

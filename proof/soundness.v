@@ -272,15 +272,19 @@ Proof.
   - destruct Ax as [-> | ->], Ay as [-> | ->], Az as [-> | ->]; tauto.
   - destruct Bx as [-> | ->], By as [-> | ->], Bz as [-> | ->]; tauto.
 Qed.
-Lemma outer_spans g f : boxed_group g -> In f (parts g) -> forall d, spans d (outer g) (corners f).
+Lemma corners_span d ps f : In f ps -> spans d (flat_map corners ps) (corners f).
+Proof. intros F v V. exists v, v. split; [apply in_flat_map; eauto |]. split; [apply in_flat_map; eauto | lia]. Qed.
+Lemma outer_tree_spans t : forall halvings f, boxed t -> In f (leaves t) -> forall d, spans d (outer_tree halvings t) (corners f).
 Proof.
-  intros B F d v V.
-  assert (exists p q, In p (flat_map corners (parts g)) /\ In q (flat_map corners (parts g)) /\
-            (dot d p <= dot d v <= dot d q)%Z) as Itself.
-  { exists v, v. split; [apply in_flat_map; eauto |]. split; [apply in_flat_map; eauto | lia]. }
-  destruct g as [from ps | [p | n low high a b]]; auto. unfold outer. destruct (4 <? n)%Z; [| auto].
-  apply eight_spans. destruct B as (B & _). apply (B f); auto.
+  induction t as [p | n low high a IHa b IHb]; intros halvings f B F d.
+  - destruct F as [<- | []]. intros v V. exists v, v. repeat split; auto; lia.
+  - cbn [outer_tree]. destruct (4 <? n)%Z; [| now apply corners_span]. destruct B as (Box & Ba & Bb).
+    destruct halvings as [| fewer]; intros v V; [apply eight_spans, (Box f); auto |].
+    apply in_app_or in F. destruct F as [F | F]; [destruct (IHa fewer f Ba F d v V) as (p & q & P & Q & L)
+      | destruct (IHb fewer f Bb F d v V) as (p & q & P & Q & L)]; exists p, q; rewrite !in_app_iff; auto.
 Qed.
+Lemma outer_spans g f : boxed_group g -> In f (parts g) -> forall d, spans d (outer g) (corners f).
+Proof. destruct g as [from ps | t]; cbn -[outer_tree]; intros B F d; [now apply corners_span | now apply outer_tree_spans]. Qed.
 
 Lemma cut_spec {T} (rest : list T) : forall n taken l m, cut n taken rest = (l, m) ->
   forall a, In a taken \/ In a rest <-> In a l \/ In a m.
