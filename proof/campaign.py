@@ -253,6 +253,21 @@ def regroup(rng, lines):
     return lines
 
 
+def one_cell(rng, lines, meshes, trees, pose):
+    """One cell for all faces, and a pose in which hulls of the meshes touch along its direction or nearly: those of the
+    checkers, or those of one halving fewer or more."""
+    d, pose = [rng.randint(-2, 2) for _ in range(2)] + [rng.choice([-1, 1])], list(pose)
+    a, b = (check.hull(check.read_tree(tree.decode())[1], mesh, check.Posed(mesh[0], p), rng.choice([2, 3, 4]))
+            for tree, mesh, p in zip(trees, meshes, (IDENTITY, pose)))
+    overlap = max(check.dot(d, p) for p in a) - min(check.dot(d, q) for q in b)
+    pose[11] = float(fractions.Fraction(pose[11]) + overlap / d[2])
+    pose[11] = rng.choice([pose[11], math.nextafter(pose[11], math.inf), math.nextafter(pose[11], -math.inf)])
+    claim = {key: value for key, value in json.loads(lines[0]).items() if key not in ("within", "below", "along")}
+    claim.update(least="touching", relation=rng.choice([None, "apart"]), contacts=[])
+    cell = {"cell": "separated", "direction": list(map(str, d))}
+    return pose, with_hashes([json.dumps(claim), json.dumps(cell)], meshes, IDENTITY + pose)
+
+
 def write_tree(mesh, order):
     return (json.dumps({"collisionchip_tree": 1, "mesh": mesh, "order": order}) + "\n").encode()
 
@@ -408,7 +423,10 @@ def main(checked, cchip, count, every="100", seconds="inf"):
                 campaign.add(names, meshes, pose, ("\n".join(lines) + "\n").encode(), False, trees)
                 kind, within, given = rng.random(), "--within" in options, trees
                 if "tree_a" in lines[0] and rng.random() < 0.4:
-                    if rng.random() < 0.6:
+                    kind = rng.random()
+                    if kind < 0.5 and any(large):
+                        pose, lines = one_cell(rng, lines, meshes, trees, pose)
+                    elif kind < 0.7:
                         lines = regroup(rng, lines)
                     else:
                         lines, given = change_tree(rng, lines, trees)
