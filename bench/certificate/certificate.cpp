@@ -129,11 +129,10 @@ class Benchmark {
       costs.hits += answer.hit ? 1 : 0;
       try {
         const Certificate certificate = timed(costs.make, [&] { return certify(query, request, answer, trees); });
-        const CertificateVerdict verdict =
-            timed(costs.check, [&] {
-              return options_.trees ? check_certificate(*tree_a, pose.a, *tree_b, pose.b, certificate)
-                                    : check_certificate(a.mesh(), pose.a, b.mesh(), pose.b, certificate);
-            });
+        const CertificateVerdict verdict = timed(costs.check, [&] {
+          return options_.trees ? check_certificate(*tree_a, pose.a, *tree_b, pose.b, certificate)
+                                : check_certificate(a.mesh(), pose.a, b.mesh(), pose.b, certificate);
+        });
         ++certified_;
         std::ostringstream text;
         write_certificate(certificate, text);

@@ -32,8 +32,8 @@ struct CertificateCell {
     split_a,  ///< the set of A in two: faces before `at` and from `at` on; the cells of the first follow, then the rest
     split_b,  ///< the same for the set of B
     separated,  ///< along `direction`, every vertex of the set of A lies strictly below every vertex of the set of B;
-                ///< `within` asks for more, `along` for something else. In version 3 the corners of their boxes do, if a
-                ///< set has more than CertificateTree::most_faces_without_box faces
+                ///< `within` asks for more, `along` for something else. In version 3 the points that stand for the
+                ///< sets do, those of CertificateTree::for_hull()
     meet,       ///< one face each: they share a point, which both weights name
     touch,      ///< one face each: the same, and along `direction` no vertex of A lies above a vertex of B
     cross,      ///< one face each: the same with positive weights, and the edges of `span` span space

@@ -57,10 +57,11 @@ struct DistanceResult {
 DistanceResult distance(const Object& a, const Pose& pose_a, const Object& b, const Pose& pose_b,
                         const DistanceRequest& request = {});
 
-/// The distance of each of some points to the surface of a placed object, in their order; the object is A, `point_b`
-/// the point, `face_b` 0. With inside() of <cchip/solids.hpp> a distance to a solid has a sign. \param points in the
-/// world \param threads 0: as many as there are cores \throws as distance(); std::invalid_argument a point is not
-/// finite or beyond what a pose may hold
+/// The distance of each of some points to the surface of a placed object, in their order. The object is A, `point_b`
+/// the point, `face_b` 0. With inside() of <cchip/solids.hpp> a distance to a solid has a sign.
+/// \param points in the world
+/// \param threads 0: as many as there are cores
+/// \throws as distance(); std::invalid_argument a point is not finite or beyond what a pose may hold
 std::vector<DistanceResult> distances(const Object& object, const Pose& pose, const std::vector<Vec3d>& points,
                                       const DistanceRequest& request = {}, unsigned threads = 1);
 

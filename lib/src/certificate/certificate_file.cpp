@@ -104,8 +104,8 @@ void write_certificate(const Certificate& certificate, std::ostream& out) {
 }
 
 void write_certificate_tree(const CertificateTree& tree, std::ostream& out) {
-  out << "{\"collisionchip_tree\":1,\"mesh\":" << hash_text(tree.hash())
-      << ",\"order\":" << list_of_runs(tree.order()) << "}\n";
+  out << "{\"collisionchip_tree\":1,\"mesh\":" << hash_text(tree.hash()) << ",\"order\":" << list_of_runs(tree.order())
+      << "}\n";
 }
 
 #ifdef CCHIP_WITH_JSON
@@ -200,7 +200,8 @@ std::uint64_t hash(const json& value) {
 Certificate read_claim(const json& line) {
   Certificate c;
   const json& version = line.at("collisionchip_certificate");
-  require(version.is_number_unsigned() && (version == 1 || version == 2 || version == 3), "no certificate, or another version of it");
+  require(version.is_number_unsigned() && (version == 1 || version == 2 || version == 3),
+          "no certificate, or another version of it");
   c.version = version.get<int>();
   c.hash_a = hash(line.at("mesh_a"));
   c.hash_b = hash(line.at("mesh_b"));

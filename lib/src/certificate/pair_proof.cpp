@@ -205,7 +205,6 @@ std::vector<Int> as_vector(const Point& x) { return {x[0], x[1], x[2]}; }
 
 Point minus(const Point& p, const Point& q) { return {p[0] - q[0], p[1] - q[1], p[2] - q[2]}; }
 
-
 /// Weights of some vertices of A and of B; those of either have the sum `total`.
 struct NamedPoints {
   std::vector<std::pair<std::size_t, Int>> a;
