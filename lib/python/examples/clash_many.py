@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Which of very many parts clash? Like clash_check.py, over a Dask cluster.
+"""Which of very many parts clash? Like cchip clash, over a Dask cluster.
 
 Every mesh file of FOLDER is a part, in the coordinates of the assembly. A sweep over their boxes finds the pairs that
 may touch, the workers test them. RESULT gets a line for each pair that touches, lies one inside the other or is at most
