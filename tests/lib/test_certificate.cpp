@@ -893,12 +893,12 @@ TEST_CASE("certificate: coordinates at the ends of the doubles", "[lib][certific
 
 TEST_CASE("certificate: trees of meshes with boxes, in poses of all kinds", "[lib][certificate]") {
   std::mt19937_64 random = generator(11);
-  const Object a(make_sphere(0.4, 5, 0.1)), b(make_sphere(0.3, 4, 0.1));
+  const Object a(make_sphere(0.4, 3, 0.1)), b(make_sphere(0.3, 2, 0.1));
   const CertificateTree tree_a = make_certificate_tree(a.mesh()), tree_b = make_certificate_tree(b.mesh());
   const CitedTrees trees = {&tree_a, &tree_b};
   std::map<std::string, int> told;
   std::size_t cells = 0, of_orders = 0;
-  for (int n = 0; n < 120; ++n) {
+  for (int n = 0; n < 60; ++n) {
     std::array<Placed, 2> pair = {{{a.mesh()}, {b.mesh()}}};
     const PoseClass c = pose_classes[std::size_t(n) % std::size(pose_classes)];
     for (Placed& p : pair) p.pose = random_pose(c, 0.5, random);

@@ -198,17 +198,19 @@ TEST_CASE("errors: values without a meaning", "[system][errors]") {
 TEST_CASE("errors: command line", "[system][errors]") {
   const std::string help = "; see cchip --help";
   const std::string pairs_help = "; see cchip pairs --help";
-  check_error({},
-              "cchip: the command is missing; the commands are collide, distance, check, clash, pairs, meshpairs, "
-              "demo, reconfig, "
-              "version, help" +
-                  help);
+  check_error(
+      {},
+      "cchip: the command is missing; the commands are collide, distance, check, tree, clash, pairs, meshpairs, "
+      "demo, reconfig, "
+      "version, help" +
+          help);
   check_error({"pairs"}, "cchip: the file of the pairs, FILE, is missing; see cchip pairs --help");
   check_error({"pairs", "f", "--engine", "abacus"},
               "cchip: --engine: abacus not in {rtl,model,eigen,exact}" + pairs_help);
   check_error({"pairs", "f", "--format", "xml"}, "cchip: --format: xml not in {table,csv,jsonl}" + pairs_help);
   const std::string commands =
-      ": no such command; the commands are collide, distance, check, clash, pairs, meshpairs, demo, reconfig, version, "
+      ": no such command; the commands are collide, distance, check, tree, clash, pairs, meshpairs, demo, reconfig, "
+      "version, "
       "help";
   check_error({"foo"}, "cchip: foo" + commands);
   check_error({"foo", "--engine", "model"}, "cchip: foo" + commands);
@@ -257,7 +259,7 @@ TEST_CASE("errors: what is missing or misspelt is named", "[system][errors]") {
   check_error({"collide", cube, cube, "--expect", "touches"},
               "cchip: --expect requires --poses; see cchip collide --help");
   const std::string commands =
-      " the commands are collide, distance, check, clash, pairs, meshpairs, demo, reconfig, version, help";
+      " the commands are collide, distance, check, tree, clash, pairs, meshpairs, demo, reconfig, version, help";
   check_error({"colide", cube, cube}, "cchip: colide: no such command; did you mean collide?" + commands);
   check_error({"mehspairs"}, "cchip: mehspairs: no such command; did you mean meshpairs?" + commands);
   check_error({"help", "pair"}, "cchip: pair: no such command; did you mean pairs?" + commands);
