@@ -13,6 +13,8 @@
 
 namespace cchip {
 
+/// Of two meshes in their poses. Lengths of the world are in a unit of its own, a power of two, in which none is much
+/// above 1.
 class BoxDivision {
  public:
   /// Boxes of a hull by their middles and halves, in coordinates of the mesh; vertices are boxes of no size.
@@ -24,7 +26,6 @@ class BoxDivision {
     double size = 0;
     mutable Hull hull = {};  ///< made when it is asked for
   };
-  /// Both in the unit of this class, a power of two, in which no number is much above 1.
   struct Proposal {
     std::vector<Digits> direction;
     bool is_certain = false;  ///< it parts them as the claim wants; else that has to be checked
@@ -70,6 +71,7 @@ class BoxDivision {
   Vec3d extreme(std::size_t side, const Hull& hull, const Vec3d& direction) const;
   /// Appends a proposal if the direction, or the opposite one, parts the hulls, or may.
   void part_along(const Vec3d& direction, const Hull& a, const Hull& b, std::vector<Proposal>& found) const;
+  /// Above the rounding of a gap along a direction: sums of some ten products, each off by a few 2^-53 of its size.
   double margin(const Vec3d& direction) const { return 0x1p-44 * direction.lpNorm<1>() * scale_; }
   /// The sign of the direction's value on the claim's translation.
   int rise(const Vec3d& direction) const;
