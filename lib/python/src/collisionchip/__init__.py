@@ -19,5 +19,5 @@ from .poses import make_pose
 __all__ = ["Along", "Assembly", "AssemblyPair", "AssemblyReport", "Certificate", "CloudResult", "CollisionManager",
            "ContactData", "Device", "Distance", "DistanceData", "Object", "PointCloud", "Result", "Scene",
            "__version__", "clear_along", "collide", "collide_many", "cpu_targets", "device_names", "distance",
-           "first_contact", "first_met", "inside",
+           "distances", "first_contact", "first_met", "inside",
            "load_points", "make_pose", "open_device", "scene_to_collision", "solids"]
