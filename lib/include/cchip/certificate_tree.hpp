@@ -65,9 +65,7 @@ inline void check_order(const std::vector<std::uint32_t>& order, std::size_t cou
 /// A mesh and what all checks of certificates ask about it. Keeps a reference to the mesh.
 class CheckedMesh {
  public:
-  /// \throws std::invalid_argument a face that is neither triangle nor quad or names no vertex, a coordinate that is
-  /// not
-  ///         finite
+  /// \throws std::invalid_argument a face that is neither triangle nor quad or names no vertex; one that is not finite
   explicit CheckedMesh(const Mesh& mesh) : mesh_(&mesh) {
     using certificate_check::require;
     require(mesh.file_face.empty() || mesh.file_face.size() == mesh.faces.size(), "a broken mesh");

@@ -1,25 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cchip/distance.hpp>
 #include <cchip/internal/exact/posed_distances.hpp>
 #include <cchip/internal/geometry/decimal.hpp>
 #include <cchip/internal/judge/face_pairs.hpp>
 #include <cchip/internal/judge/near_parts.hpp>
 #include <cmath>
-#include <future>
 #include <limits>
 #include <list>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "exact/nearest_planes.hpp"
+#include "in_blocks.hpp"
 #include "search/behind_plane.hpp"
 #include "search/frame_gap.hpp"
 #include "search/gap_queue.hpp"
@@ -467,21 +465,8 @@ std::vector<DistanceResult> distances(const Object& object, const Pose& pose, co
   }
   std::vector<DistanceResult> results(points.size());
   constexpr std::size_t block = 256;  // points that one thread takes at a time
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
-    for (std::size_t begin = next.fetch_add(block); begin < points.size(); begin = next.fetch_add(block)) {
-      for (std::size_t i = begin; i < std::min(points.size(), begin + block); ++i) {
-        results[i] = distance(object, pose, origin, places[i], request);
-      }
-    }
-  };
-  if (threads == 0) threads = std::max(1U, std::thread::hardware_concurrency());
-  std::vector<std::future<void>> others;
-  for (std::size_t i = 1; i < threads && i * block < points.size(); ++i) {
-    others.push_back(std::async(std::launch::async, work));
-  }
-  work();
-  for (std::future<void>& other : others) other.get();
+  in_blocks(points.size(), block, threads,
+            [&] { return [&](std::size_t i) { results[i] = distance(object, pose, origin, places[i], request); }; });
   return results;
 }
 

@@ -28,22 +28,20 @@
 // All numbers are integers: vertices in units of 2^exponent, points with a denominator.
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cchip/internal/exact/posed_pairs.hpp>
 #include <cchip/internal/geometry/decimal.hpp>
 #include <cchip/internal/judge/face_pairs.hpp>
 #include <cchip/internal/judge/near_parts.hpp>
 #include <cchip/point_cloud.hpp>
 #include <cchip/solids.hpp>
-#include <future>
 #include <map>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <utility>
 
+#include "in_blocks.hpp"
 #include "search/query_scale.hpp"
 #include "solid_side.hpp"
 
@@ -687,22 +685,11 @@ std::vector<PointPlace> inside(const Object& object, const Pose& pose, const std
     if (is_on) places[contact.point] = PointPlace::on_surface;
   }
   constexpr std::size_t block = 1024;  // points that one thread takes at a time, close to each other in many files
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
-    PointPlaces sides(object, pose, request.inside, exponent);
-    for (std::size_t begin = next.fetch_add(block); begin < points.size(); begin = next.fetch_add(block)) {
-      for (std::size_t i = begin; i < std::min(points.size(), begin + block); ++i) {
-        if (places[i] != PointPlace::on_surface && sides.is_inside(points[i])) places[i] = PointPlace::inside;
-      }
-    }
-  };
-  if (threads == 0) threads = std::max(1U, std::thread::hardware_concurrency());
-  std::vector<std::future<void>> others;
-  for (std::size_t i = 1; i < threads && i * block < points.size(); ++i) {
-    others.push_back(std::async(std::launch::async, work));
-  }
-  work();
-  for (std::future<void>& other : others) other.get();
+  in_blocks(points.size(), block, threads, [&] {
+    return [&, sides = PointPlaces(object, pose, request.inside, exponent)](std::size_t i) mutable {
+      if (places[i] != PointPlace::on_surface && sides.is_inside(points[i])) places[i] = PointPlace::inside;
+    };
+  });
   return places;
 }
 
