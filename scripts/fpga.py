@@ -18,7 +18,8 @@ usage: fpga.py [ROW[:SEEDS]...] [options]     without ROW all rows; `fpga.py --l
   --families        only count what the rows that have it take of other families: synthesis alone; --write: into
                     docs/hardware/fpga-vendors.md, where the lines of what did not end stay
   --family NAME     with --families, of this family alone, as "Gowin"; may be repeated
-  --limit MINUTES   with --families, processor time of each synthesis at most
+  --limit MINUTES   processor time of each tool at most; a seed that does not route within it is left out, its row
+                    says so
   --write           rewrite the rows of this run in the generated tables of docs/hardware/fpga.md; other rows stay
   --bill            only the bills by block of the rows that have one (chip_tri, chip): synthesis, without place and
                     route
@@ -58,6 +59,7 @@ import pathlib
 import re
 import resource
 import shutil
+import signal
 import statistics
 import subprocess
 import sys
@@ -165,7 +167,7 @@ def rows():
     # the whole chip: its bill by block, then flat; a third fewer multiplexers of LUTs without the device's wide ones
     small = (("QUERIES", 8), ("PAIRS", 24), ("LEAVES", 8), ("LEAF_DEPTH", 40), ("LEAF_NUMBERS", 32), ("CACHE_KB", 64),
              ("MISSES", 16), ("PASSES", 2))
-    table += [Row(name, "cchip_chip", (("RM_ID", module), *more), shape="", seeds=3, block=True, synth=" -nowidelut",
+    table += [Row(name, "cchip_chip", (("RM_ID", module), *more), shape="", seeds=8, block=True, synth=" -nowidelut",
                   owners=CHIP_BLOCKS, floorplan=True,
                   router="router2", families=name == "chip")
               for name, module, more in (("chip_small", 1, small), ("chip_tri", 1, ()), ("chip", 3, ()))]
@@ -219,6 +221,8 @@ def step(name, command, files, depends, product, build=None):
     failed = build / f"{name}.failed"
     shutil.rmtree(failed, ignore_errors=True)
     partial.rename(failed)
+    if code == -signal.SIGXCPU:
+        raise ToolError(f"{name}: {pathlib.Path(command[0]).name} did not end within --limit")
     errors = re.findall(r"^.*ERROR:? .*$", (failed / "log").read_text(), re.M)
     raise ToolError(f"{name}: {pathlib.Path(command[0]).name} failed (exit code {code}), see "
                     f"{failed.relative_to(ROOT)}/log{': ' + errors[0].strip() if errors else ''}")
@@ -593,6 +597,7 @@ def figures(row, synthesis, reports, beats):
     """What fpga.json holds of a row; reports by seed; beats as in mean_beats."""
     static, regions, harness = module_cells(cells((synthesis / "stat.json").read_text()))
     module = static + regions
+    tried, reports = len(reports), {seed: report for seed, report in reports.items() if report}
     clocks = {seed: round(fmax(report), 2) for seed, report in reports.items()}
     median = statistics.median_low(clocks.values())
     seed = next(seed for seed, clock in clocks.items() if clock == median)
@@ -604,7 +609,7 @@ def figures(row, synthesis, reports, beats):
         "substages": row.substages, "lanes": row.lanes, "shape": row.shape, "label": row.label or row.name,
         "lut4": module["LUT4"], "comb": used["TRELLIS_COMB"] - harness.get("LUT4", 0), "carry": module["CCU2C"],
         "ff": module["TRELLIS_FF"], "dsp": module["MULT18X18D"], "bram": module["DP16KD"],
-        "dram": module["TRELLIS_DPR16X4"], "fmax_mhz": clocks, "fmax_min": min(clocks.values()),
+        "dram": module["TRELLIS_DPR16X4"], "seeds_tried": tried, "fmax_mhz": clocks, "fmax_min": min(clocks.values()),
         "fmax_median": fmax_median, "fmax_max": max(clocks.values()),
         "critical_path": in_words(critical_path(reports[seed])), "synthesis": synthesis.name,
         "block": row.block,
@@ -620,7 +625,7 @@ def last_line(row):
     static = row["static"]
     width = "" if row["block"] else f" w={row['coord_w']}"
     return (f"{row['label']}{width} lut={row['lut4']} ff={row['ff']} dsp={row['dsp']} ram={row['bram']} "
-            f"fmax_mhz={row['fmax_median']:.1f} seeds={len(row['fmax_mhz'])}" +
+            f"fmax_mhz={row['fmax_median']:.1f} seeds={seeds_of(row)}" +
             (f" static_lut={static['LUT4, logic']} static_ff={static['FF']} static_ram={static['block RAM']}"
              if static else ""))
 
@@ -636,9 +641,14 @@ def millions(row, name, programme):
     return f"{rates[programme] / 1e6:.1f}" if rates else "-"
 
 
+def seeds_of(row):
+    routed, tried = len(row["fmax_mhz"]), row["seeds_tried"]
+    return f"{routed}" if routed == tried else f"{routed} of {tried}"
+
+
 def clocks_of(row):
     return (f"{row['fmax_min']:.1f} / {row['fmax_median']:.1f} / {row['fmax_max']:.1f}, "
-            f"{len(row['fmax_mhz'])} seed{'s' if len(row['fmax_mhz']) > 1 else ''}")
+            f"{seeds_of(row)} seed{'s' if row['seeds_tried'] > 1 else ''}")
 
 
 def area_table(found):
@@ -886,7 +896,7 @@ def measure(chosen, options):
         found = {}
         for row, jobs in placed.items():
             reports = {seed: job.result() for seed, job in jobs.items()}
-            if None in reports.values():
+            if not any(reports.values()):
                 continue
             found[row.name] = figures(row, syntheses[row].result(), reports, beats[row.shape].result()
                                       or {} if row.shape else {})
@@ -1005,9 +1015,6 @@ def show_estimates(chosen, options):
 
 def count_families(chosen, options):
     """--families: exit code 1 if a synthesis failed or did not end."""
-    if options.limit:  # children have it, too
-        seconds = round(60 * options.limit)
-        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
     failures = []
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         jobs = {row.name: {family: pool.submit(attempt, failures, count_family, row, family)
@@ -1029,6 +1036,9 @@ def main():
         return 1 if check() else 0
     chosen = [dataclasses.replace(row, seeds=min(row.seeds, options.rows.get(name, options.seeds)))
               for name, row in rows().items() if not options.rows or name in options.rows]
+    if options.limit:  # children have it, too
+        hard = resource.getrlimit(resource.RLIMIT_CPU)[1]
+        resource.setrlimit(resource.RLIMIT_CPU, (round(60 * options.limit), hard))
     if options.bill:
         found = {row.name: {"bill": bill(row, synthesise(row, options))} for row in chosen if row.owners}
         table = owners_table(found)
@@ -1050,7 +1060,7 @@ def main():
     for name in ("ecp5", "subsystems", "endpoints", "blocks", "chip", "chip_bill", "chip_endpoints"):
         if name in made:
             print(made[name])
-    if options.write and not failures:
+    if options.write and found:
         if "subsystem1" in found:
             datasheet.rewrite(PAGE, "bill", bill_table(options))
         for name, text in made.items():

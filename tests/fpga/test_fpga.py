@@ -34,7 +34,9 @@ class Reports(unittest.TestCase):
         """Figures of a row whose seeds 1, 2.. reached these clocks."""
         reports = {}
         for seed, clock in enumerate(clocks, 1):
-            reports[seed] = copy.deepcopy(self.report)
+            reports[seed] = clock and copy.deepcopy(self.report)
+            if not clock:
+                continue
             for domain in reports[seed]["fmax"].values():
                 domain["achieved"] = clock
         beats = {fpga.TYPICAL: {"exhaustive": 10.0, "directed": 2.5}}
@@ -116,6 +118,19 @@ class Reports(unittest.TestCase):
         self.assertRegex(line, r"^tri_tri w=16 lut=\d+ ff=\d+ dsp=24 ram=\d+ fmax_mhz=100\.0 seeds=1$")
         line = fpga.last_line(self.figures([80.0] * 3, fpga.rows()["tri_tri_w18"]))
         self.assertRegex(line, r"^tri_tri w=18 .* seeds=3$")
+
+    def test_seeds_that_did_not_route_are_counted(self):
+        row = self.figures([100, None, 80, 90])
+        self.assertEqual(row["fmax_median"], 90)
+        self.assertEqual(fpga.clocks_of(row), "80.0 / 90.0 / 100.0, 3 of 4 seeds")
+        self.assertRegex(fpga.last_line(row), r" fmax_mhz=90\.0 seeds=3 of 4$")
+
+    def test_a_tool_that_does_not_end_is_named(self):
+        program = "import resource; resource.setrlimit(resource.RLIMIT_CPU, (1, 2))\nwhile True: pass"
+        with (tempfile.TemporaryDirectory() as folder,
+              unittest.mock.patch.object(fpga, "ROOT", pathlib.Path(folder)),
+              self.assertRaisesRegex(fpga.ToolError, r"^endless: python3\S* did not end within --limit$")):
+            fpga.step("endless", [sys.executable, "-c", program], {}, [], "never", pathlib.Path(folder))
 
     def test_tables_have_a_row_for_each_row(self):
         row = self.figures([100.0])
