@@ -7,7 +7,8 @@
 //   cuts         d -> q if DEPTH > 0
 //   reset        RESET = 1 clears every stage (valid bits); RESET = 0 leaves data alone
 //   MEMORY = 1   (DEPTH >= 3, RESET = 0) keeps the values in a small memory with a circulating
-//                pointer instead of flip-flops
+//                pointer instead of flip-flops. With the macro CCHIP_DELAY_CHAINS, for a family
+//                without memories of LUTs, it is a chain of flip-flops, too
 //   about        A delay line: q is what d was DEPTH clocks ago. The pipeline uses it for
 //                everything that travels beside the arithmetic (valid bits, points, axis codes),
 //                and the arithmetic blocks use it for their optional registers.
@@ -41,11 +42,16 @@ module cchip_delay #(
                 cchip_error_delay_WIDTH_below_1_or_DEPTH_below_0_or_RESET_not_0_or_1)
   `CCHIP_REFUSE(MEMORY < 0 || MEMORY > 1 || (MEMORY == 1 && (DEPTH < 3 || RESET == 1)),
                 cchip_error_delay_MEMORY_needs_DEPTH_3_and_RESET_0)
+`ifdef CCHIP_DELAY_CHAINS
+  localparam integer IN_MEMORY = 0;
+`else
+  localparam integer IN_MEMORY = MEMORY;
+`endif
   generate
     if (DEPTH == 0) begin : gen_wire
       assign q = d;
       wire unused = &{1'b0, clk, rst};
-    end else if (MEMORY != 0) begin : gen_memory
+    end else if (IN_MEMORY != 0) begin : gen_memory
       // DEPTH - 1 words and the output register
       localparam integer PTR_W = $clog2(DEPTH - 1);
       localparam [31:0] BEFORE_LAST = DEPTH - 3;

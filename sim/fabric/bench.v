@@ -13,8 +13,7 @@
 //                without_roc: the region is
 //                neither held in reset during a swap nor reset after it; seed=N
 // Defined by fabric.py: FABRIC_ROWS, FABRIC_COLUMNS, FABRIC_FIRST, PERIOD (ns), PAIRS (a swap),
-// GOLD (module),
-// SET_SMALL or SET_POINT.
+// GOLD (module), GOLD_MORE (parameters of it), SET_SMALL, SET_POINT or SET_TESTS.
 module bench;
   `include "images.vh"
 
@@ -185,13 +184,19 @@ module bench;
   wire [7:0] a_rm_id, b_rm_id;
 `ifdef SET_SMALL
   localparam [7:0] A = 8'd1, B = 8'd2;
+  localparam [1:0] MODE = `CCHIP_MODE_EXHAUSTIVE;
+`elsif SET_TESTS
+  localparam [7:0] A = 8'd4, B = 8'd1;
+  localparam [1:0] MODE = `CCHIP_MODE_DIRECTED;
 `else
   localparam [7:0] A = 8'd4, B = 8'd0;
+  localparam [1:0] MODE = `CCHIP_MODE_EXHAUSTIVE;
 `endif
   `GOLD #(
       .RM_ID   (A),
       .COORD_W (4),
       .CONTEXTS(1)
+      `GOLD_MORE
   ) u_gold_a (
       .clk           (clk),
       .rst           (g_rst),
@@ -206,6 +211,7 @@ module bench;
       .RM_ID   (B),
       .COORD_W (4),
       .CONTEXTS(1)
+      `GOLD_MORE
   ) u_gold_b (
       .clk           (clk),
       .rst           (g_rst),
@@ -304,7 +310,7 @@ module bench;
         outstanding = 1;
         vertex_valid <= 1'b1;
         vertex <= {$random(seed), $random(seed)};
-        vertex[15:0] <= {2'd0, id[0] ? 4'd0 : 4'd1, id, v == 2, v == 0};
+        vertex[15:0] <= {MODE, id[0] ? 4'd0 : 4'd1, id, v == 2, v == 0};
       end
       @(posedge clk);
       vertex_valid <= 1'b0;
@@ -314,7 +320,7 @@ module bench;
     begin
       answered = 1'b0;
       waited = 0;
-      while (!answered && waited < 300) begin
+      while (!answered && waited < 2000) begin
         @(posedge clk);
         waited = waited + 1;
         if (static_valid === 1'b1) begin
@@ -447,6 +453,11 @@ module bench;
       swap(8'd1, MODULE_1_AT, MODULE_1_SIZE, `CCHIP_SWAP_OK, 1'b0);
       traffic;
     end
+`elsif SET_TESTS
+    swap(8'd4, MODULE_4_AT, MODULE_4_SIZE, `CCHIP_SWAP_OK, 1'b0);
+    traffic;
+    swap(8'd1, MODULE_1_AT, MODULE_1_SIZE, `CCHIP_SWAP_OK, 1'b1);
+    traffic;
 `else
     swap(8'd4, MODULE_4_AT, MODULE_4_SIZE, `CCHIP_SWAP_OK, 1'b0);
     traffic;

@@ -3,10 +3,11 @@
 """Exchanges modules in a region of an open FPGA fabric, in simulation down to the configuration latches: generates the
 fabric, places and routes each module inside its region, packs the frames for cchip_config_controller, and simulates.
 
-usage: fabric.py [--set small|point] [--seed N] [--without-decoupler | --without-roc] [--keep]
+usage: fabric.py [--set small|point|tests] [--seed N] [--without-decoupler | --without-roc] [--keep]
 
 --set      small (the default): two small modules and a blank on 10 x 8 tiles, with faulty bitstreams, three minutes.
-           point: the test of points against triangles and a blank, 28 x 26 tiles, 2.3 GB; not simulated to its end yet
+           point: the test of points against triangles and a blank, 28 x 26 tiles, 2.1 GB, twenty minutes of CPU.
+           tests: this test, then that of two triangles in its place, 31 x 30 tiles, TESTS_NEED
 --seed     of the traffic (default 1)
 --keep     takes the fabric and the bitstreams of an earlier run as they are
 --without-decoupler, --without-roc   leave this part out, to see that its absence is found: the run must then fail
@@ -50,13 +51,17 @@ class Set:
     first: int  # column of the region
     modules: tuple  # numbers, the blank first
     top: str  # module whose RM_ID is the number
+    parameters: str  # further ones of it
     period: int  # ns
     pairs: int  # after each swap
     seconds: int  # bound of the simulation
 
 
-SETS = {"small": Set("W" + 8 * "L" + "I", 8, 5, (0, 1, 2), "small_region", 400, 20, 1200),
-        "point": Set("W" + 26 * "L" + "I", 26, 3, (0, 4), "cchip_pr_region", 800, 24, 7200)}
+SETS = {"small": Set("W" + 8 * "L" + "I", 8, 5, (0, 1, 2), "small_region", "", 400, 20, 1200),
+        "point": Set("W" + 26 * "L" + "I", 26, 3, (0, 4), "cchip_pr_region", "", 800, 24, 7200),
+        # the shortest stages have the least flip-flops
+        "tests": Set("W" + 29 * "L" + "I", 30, 2, (0, 4, 1), "cchip_pr_region", ", .EXHAUSTIVE(0), .SUBSTAGES(6)", 1600,
+                     12, 14400)}
 TILES = {"W": ("NULL", "W_IO", "NULL"), "L": ("N_term_single", "LUT4AB", "S_term_single"),
          "I": ("N_term_RAM_IO", "RAM_IO", "S_term_RAM_IO")}
 
@@ -327,11 +332,11 @@ def implement(kind, work, project, pins, name, module, tools_at):
     else:
         region = kind.top
         sources = [HERE / "small_region.v"] if region == "small_region" else rtl_files()
-        region += f" #(.RM_ID({module}), .COORD_W(4), .CONTEXTS(1))"
+        region += f" #(.RM_ID({module}), .COORD_W(4), .CONTEXTS(1){kind.parameters})"
         part_of_fabric(project, folder, lambda column: column >= kind.first)
     write_top(pins, folder / "top.v", region)
     read = " ".join(str(path) for path in sources)
-    synthesis = (f"read_verilog -lib {HERE}/cells.v; read_verilog -DSYNTHESIS -I{RTL}/include -defer {read}; "
+    synthesis = (f"read_verilog -lib {HERE}/cells.v; read_verilog -DSYNTHESIS -DCCHIP_DELAY_CHAINS -I{RTL}/include -defer {read}; "
                  f"read_verilog {folder}/top.v; hierarchy -check -top fabric_top; "
                  "synth -flatten -run begin:fine; memory_map; opt -full; techmap; opt; "
                  "setattr -unset init w:*; "  # the fabric sets no flip-flop; none of ours needs it
@@ -426,7 +431,7 @@ def build(kind, work, tools_at):
         if module == 0:
             boot = stream({place: data if place[0] in region else neighbour[place] for place, data in frames.items()},
                           range(len(kind.columns)))
-    if 1 in kind.modules:
+    if kind.top == "small_region":
         faulty(images, kind, project)
     write_images(work, images, boot)
 
@@ -436,7 +441,7 @@ def build(kind, work, tools_at):
 def simulate(name, kind, work, options):
     defines = [f"-DFABRIC_ROWS={kind.rows}", f"-DFABRIC_COLUMNS={len(kind.columns)}", f"-DFABRIC_FIRST={kind.first}",
                f"-DPERIOD={kind.period}", f"-DLUT_DELAY={kind.period * 3 // 10}", f"-DPAIRS={kind.pairs}",
-               f"-DGOLD={kind.top}", f"-DSET_{name.upper()}"]
+               f"-DGOLD={kind.top}", f"-DGOLD_MORE={kind.parameters}", f"-DSET_{name.upper()}"]
     own = [HERE / file for file in ("bench.v", "cchip_pr_virtual.v", "cchip_fabric_frames.v", "fabric_models.v",
                                     "small_region.v")]
     run(["iverilog", "-g2005", "-o", work / "bench.vvp", "-s", "bench", "-s", "fabric_state", *defines,

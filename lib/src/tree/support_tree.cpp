@@ -57,29 +57,16 @@ double sum_slack(const Vec3d& centre, double unit) {
   return 0x1p-49 * (centre.cwiseAbs().sum() + 4.0 * support_most * unit) + 0x1p-1060;
 }
 
-/// sum_up() of two numbers that are at most 2^1002 in magnitude, in a form that compilers vectorise.
-double finite_sum_up(double a, double b) {
-  const double sum = a + b;
-  std::int64_t bits = 0;
-  std::memcpy(&bits, &sum, sizeof bits);
-  const std::int64_t away = sum > 0 ? 1 : -1;  // a sum of 0 has no error
-  bits += sum_error(a, b) > 0 ? away : 0;
-  double up = 0;
-  std::memcpy(&up, &bits, sizeof up);
-  return up;
-}
-
-/// Makes the lines of single vertices. A word is a monotone function of one bound of a volume. So the word of a node is
-/// the greatest word of its vertices, bit for bit what its volume would give, and each vertex is divided only once.
+/// Makes the lines of single vertices: the word of a node is the greatest word of its vertices.
 class LineMaker {
  public:
   LineMaker(const Vec3d& centre, double unit) : slack_(sum_slack(centre, unit)) {
-    step_.fill(1);
+    per_step_.fill(1);
     for (std::size_t w = 0; w < support_words; ++w) {
       const std::array<int, 3> v = support_direction(w);
       if (v == std::array<int, 3>{0, 0, 0}) continue;
       centre_[w] = along(v, centre);
-      step_[w] = std::sqrt(static_cast<double>(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])) * unit;
+      per_step_[w] = 1 / (std::sqrt(static_cast<double>(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])) * unit);
     }
   }
 
@@ -88,37 +75,34 @@ class LineMaker {
     const double x = vertex.x();
     const double y = vertex.y();
     const double z = vertex.z();
-    // How far it lies along the direction of each word, rounded up as in make_dop26(). Loops without branches, each
-    // over numbers of one type, because compilers vectorise these.
+    // How far it lies along the direction of each word. Loops without branches, each over numbers of one type, because
+    // compilers vectorise these.
     alignas(64) std::array<double, support_words> at;
     const std::array<double, 8> axes = {x, -x, y, -y, z, -z, 0, 0};
     std::copy(axes.begin(), axes.end(), at.begin());
     alignas(64) const std::array<double, 16> u = {y, -y, y, -y, z, -z, z, -z, x, -x, x, -x, 0, 0, 0, 0};
     alignas(64) const std::array<double, 16> v = {z, z, -z, -z, x, x, -x, -x, y, y, -y, -y, 0, 0, 0, 0};
-    for (std::size_t i = 0; i < u.size(); ++i) at[first_face_word + i] = finite_sum_up(u[i], v[i]);
+    for (std::size_t i = 0; i < u.size(); ++i) at[first_face_word + i] = u[i] + v[i];
     const double* const xy = at.data() + first_face_word + 8;
     for (std::size_t i = 0; i < 4; ++i) {
-      at[first_corner_word + i] = finite_sum_up(xy[i], z);
-      at[first_corner_word + 4 + i] = finite_sum_up(xy[i], -z);
+      at[first_corner_word + i] = xy[i] + z;
+      at[first_corner_word + 4 + i] = xy[i] - z;
     }
-    // The division and its operands are off by a few units in the last place of a number below 2^16. The object lies in
-    // the ball, so the bound may be cut off there. An overflow leaves the ball, too.
+    // The sums are off by less than the slack. The product and its operands are off by a few units in the last place of
+    // a number below 2^17. The object lies in the ball, so the bound may be cut off there. An overflow leaves the ball,
+    // too. Counted from its other end steps are not negative, so that dropping digits rounds them down.
     constexpr double most = support_most;
     for (std::size_t w = 0; w < support_words; ++w) {
-      const double steps = (at[w] - centre_[w] + slack_) / step_[w] + 0x1p-30;
-      const double below = steps < most ? steps : most;
-      at[w] = below > -most ? below : -most;
+      const double steps = (at[w] - centre_[w] + slack_) * per_step_[w] + (most + 0x1p-30);
+      const double below = steps < 2 * most - 0.5 ? steps : 2 * most - 0.5;
+      at[w] = below > 0 ? below : 0;
     }
-    // ceil() would be a call: towards zero, and one up from there.
     alignas(64) std::array<std::int32_t, support_words> whole;
     for (std::size_t w = 0; w < support_words; ++w) whole[w] = static_cast<std::int32_t>(at[w]);
-    for (std::size_t w = 0; w < support_words; ++w) {
-      const double cut = whole[w];
-      at[w] = cut + (cut < at[w] ? 1.0 : 0.0);
-    }
-    for (std::size_t w = 0; w < support_words; ++w) whole[w] = static_cast<std::int32_t>(at[w]);
     SupportLine line;
-    for (std::size_t w = 0; w < support_words; ++w) line.word[w] = static_cast<std::int16_t>(whole[w]);
+    for (std::size_t w = 0; w < support_words; ++w) {
+      line.word[w] = static_cast<std::int16_t>(whole[w] + 1 - support_most);
+    }
     line.word[6] = line.word[7] = 0;
     for (std::size_t w = first_face_word + 12; w < support_words; ++w) line.word[w] = 0;
     return line;
@@ -127,7 +111,7 @@ class LineMaker {
  private:
   double slack_;
   alignas(64) std::array<double, support_words> centre_ = {};
-  alignas(64) std::array<double, support_words> step_;
+  alignas(64) std::array<double, support_words> per_step_;
 };
 
 void take_greatest(SupportLine& line, const SupportLine& other) {
@@ -154,18 +138,17 @@ using Corners = std::array<std::uint32_t, 4>;
 /// Two triangles as the corners of a fan: three of the first one, then the one that only the second one has.
 /// \returns false if no edge of one is an edge of the other
 bool make_fan(const Mesh& mesh, const Mesh::Face& one, const Mesh::Face& two, Corners& corners) {
+  std::array<std::array<bool, 3>, 3> same;
   for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) same[i][k] = same_place(mesh, one.vertex[i], two.vertex[k]);
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t to = (i + 1) % 3;
     for (std::size_t k = 0; k < 3; ++k) {
       // Edge i, i + 1 against edge k, k + 1 in either direction: a fan needs no orientation.
-      const std::uint32_t from = one.vertex[i];
-      const std::uint32_t to = one.vertex[(i + 1) % 3];
-      const std::uint32_t p = two.vertex[k];
-      const std::uint32_t q = two.vertex[(k + 1) % 3];
-      if (!((same_place(mesh, from, q) && same_place(mesh, to, p)) ||
-            (same_place(mesh, from, p) && same_place(mesh, to, q)))) {
-        continue;
-      }
-      corners = {to, one.vertex[(i + 2) % 3], from, two.vertex[(k + 2) % 3]};
+      const std::size_t q = (k + 1) % 3;
+      if (!((same[i][q] && same[to][k]) || (same[i][k] && same[to][q]))) continue;
+      corners = {one.vertex[to], one.vertex[(i + 2) % 3], one.vertex[i], two.vertex[(k + 2) % 3]};
       return true;
     }
   }
@@ -394,7 +377,7 @@ void SupportTree::fill(const Mesh& mesh, std::vector<NodeRef> refs, const std::v
     set_ref(line, ref);
     put(n == 0 ? size_ : n - 1, line);
   }
-  put_slabs(refs);
+  put_slabs(refs, leaves);
   for (std::size_t i = 1; i < 4; ++i) put(size_ + i, SupportLine());
   std::memset(lines + vertices_at_ + 6 * faces_.size() * sizeof(float), 0, behind * sizeof(float));
   whole_words_ = this->lines()[size_].word;
@@ -403,57 +386,67 @@ void SupportTree::fill(const Mesh& mesh, std::vector<NodeRef> refs, const std::v
 }
 
 /// The slabs of all nodes but large ones, from the vertices in single precision.
-void SupportTree::put_slabs(const std::vector<NodeRef>& refs) {
+void SupportTree::put_slabs(const std::vector<NodeRef>& refs, const std::vector<Leaf>& leaves) {
   constexpr std::uint32_t most_sets = 128;  // of four vertices
   struct Below {
     Vec3d normal = Vec3d::Zero();
     std::uint32_t sets = 0;
+    std::size_t first = std::numeric_limits<std::size_t>::max();  ///< leaves, which lie side by side
+    std::size_t last = 0;
   };
   std::vector<Below> below(refs.size());
-  const auto visit = [this](NodeRef leaf, const auto& take) {
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    const NodeRef leaf = refs[leaves[i].node];
     const float* const v = vertices(leaf.first());
     const std::size_t stride = std::size_t{4} * leaf.vertex_sets();
-    for (std::size_t at = 0; at < stride; ++at) take(Vec3d(v[at], v[stride + at], v[2 * stride + at]));
-  };
-  std::vector<NodeRef> stack;
+    Below& here = below[leaves[i].node];
+    here.sets = leaf.vertex_sets();
+    here.first = here.last = i;
+    const auto between = [v, stride](std::size_t from, std::size_t to) {
+      return Vec3d(v[to] - v[from], v[stride + to] - v[stride + from], v[2 * stride + to] - v[2 * stride + from]);
+    };
+    for (std::size_t at = 0; at < stride; at += 4) here.normal += between(at, at + 2).cross(between(at + 1, at + 3));
+  }
   for (std::size_t n = refs.size(); n-- > 0;) {
     const NodeRef ref = refs[n];
     Below& here = below[n];
-    if (ref.is_leaf()) {
-      std::array<Vec3d, 8> v;
-      std::size_t count = 0;
-      visit(ref, [&](const Vec3d& at) { v[count++] = at; });
-      for (std::size_t i = 0; i < count; i += 4) here.normal += (v[i + 2] - v[i]).cross(v[i + 3] - v[i + 1]);
-      here.sets = ref.vertex_sets();
-    } else {
-      for (std::uint32_t k = 0; k < ref.count(); ++k) {
-        here.normal += below[ref.first() + k + 1].normal;
-        here.sets += below[ref.first() + k + 1].sets;
-      }
+    for (std::uint32_t k = 0; k < ref.count() && !ref.is_leaf(); ++k) {
+      const Below& child = below[ref.first() + k + 1];
+      here.normal += child.normal;
+      here.sets += child.sets;
+      here.first = std::min(here.first, child.first);
+      here.last = std::max(here.last, child.last);
     }
     std::array<std::int16_t, 4> words = {0, 0, no_slab, no_slab};
     if (here.sets <= most_sets) words = slab_words(here.normal);
     if (words[2] != no_slab) {
       const Vec3d normal = unfolded(words[0], words[1]);
-      double greatest = -support_most;
-      double least = support_most;
-      stack.assign(1, ref);
-      while (!stack.empty()) {
-        const NodeRef node = stack.back();
-        stack.pop_back();
-        if (!node.is_leaf()) {
-          for (std::uint32_t k = 0; k < node.count(); ++k) stack.push_back(lines()[node.first() + k].ref());
-          continue;
+      const auto x = static_cast<float>(normal.x());
+      const auto y = static_cast<float>(normal.y());
+      const auto z = static_cast<float>(normal.z());
+      // Four at a time, without branches, because compilers vectorise that.
+      std::array<float, 4> greatest;
+      std::array<float, 4> least;
+      greatest.fill(-support_most);
+      least.fill(support_most);
+      for (std::size_t i = here.first; i <= here.last; ++i) {
+        const NodeRef leaf = refs[leaves[i].node];
+        const float* const v = vertices(leaf.first());
+        const std::size_t stride = std::size_t{4} * leaf.vertex_sets();
+        for (std::size_t at = 0; at < stride; at += 4) {
+          for (std::size_t lane = 0; lane < 4; ++lane) {
+            const std::size_t k = at + lane;
+            const float height = x * v[k] + y * v[stride + k] + z * v[2 * stride + k];
+            greatest[lane] = greatest[lane] < height ? height : greatest[lane];
+            least[lane] = least[lane] > height ? height : least[lane];
+          }
         }
-        visit(node, [&](const Vec3d& at) {
-          const double height = normal.dot(at);
-          greatest = height > greatest ? height : greatest;
-          least = height < least ? height : least;
-        });
       }
-      // A vertex is off by less than 2^-8 units in each coordinate.
-      words[2] = height_word(greatest + 0.01);
-      words[3] = height_word(0.01 - least);
+      // A vertex is off by less than 2^-8 units in each coordinate, of which the normal takes 1 in all; the heights,
+      // below 2^15, by 5 2^-24 of that.
+      constexpr double slack = 0.02;
+      words[2] = height_word(*std::max_element(greatest.begin(), greatest.end()) + slack);
+      words[3] = height_word(slack - *std::min_element(least.begin(), least.end()));
     }
     std::byte* const line = memory_.data() + (n == 0 ? size_ : n - 1) * sizeof(SupportLine);
     std::memcpy(line + first_slab_word * sizeof words[0], words.data(), sizeof words);

@@ -32,6 +32,29 @@ std::string port_name(const rc::bit_path& port) {
   return fmt::format("{} bit, {} MHz", port.width, port.clock / 1'000'000);
 }
 
+/// What place and route made for an open fabric, and the clocks in which our controller wrote it into the latches:
+/// docs/paper/fabric.md.
+struct FabricBitfile {
+  const char* name;
+  std::uint64_t bits;
+  std::uint64_t clocks;
+};
+constexpr std::array<FabricBitfile, 2> fabric_bitfiles = {
+    {{"sum, 10 x 8 tiles", 28'864, 902}, {"points against triangles, 28 x 26 tiles", 432'064, 13'515}}};
+
+void print_fabric(std::ostream& out) {
+  constexpr rc::bit_path port = {32, 50'000'000};
+  fmt::print(out, "Bitfiles that place and route made for an open fabric, {}\n\n", port_name(port));
+  fmt::print(out, "{:<42}{:>16}{:>12}{:>12}{:>24}\n", "Module", "bitfile [bit]", "eq. (4)", "simulated",
+             "work for 0.1 % [ns]");
+  for (const FabricBitfile& file : fabric_bitfiles) {
+    const sc_time delay = rc::transfer_time(file.bits, port);
+    fmt::print(out, "{:<42}{:>16}{:>12}{:>12}{:>24}\n", file.name, grouped(file.bits), grouped(file.bits / port.width),
+               grouped(file.clocks), ns(1000 * delay));
+  }
+  fmt::print(out, "\nClocks. Simulated: until the last frame is in the latches, with waits for memory.\n\n");
+}
+
 void print_bitfiles(std::ostream& out) {
   const rc::bit_path& port = rc::virtex2_port;
   fmt::print(out, "Eq. (4): configuration delay of a bitfile, {} bit at {} MHz\n\n", port.width,
@@ -164,6 +187,7 @@ void print_report(const Figures& figures, std::ostream& out) {
   print_variants(figures, out);
   print_three(figures, out);
   print_sensitivity(figures, out);
+  print_fabric(out);
   const sc_time& reference = figures.rows[0].counted;
   const sc_time& run = figures.rows[1].counted;
   fmt::print(out, "static_ns={} single_bus_ns={} overhead_percent={:.3f} paper_static_ns={} paper_single_bus_ns={}\n",

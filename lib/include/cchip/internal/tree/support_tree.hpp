@@ -171,7 +171,7 @@ class SupportTree {
   /// \param refs what each node refers to; those of leaves do not matter
   /// \param leaves in the order of their places
   void fill(const Mesh& mesh, std::vector<NodeRef> refs, const std::vector<Leaf>& leaves);
-  void put_slabs(const std::vector<NodeRef>& refs);
+  void put_slabs(const std::vector<NodeRef>& refs, const std::vector<Leaf>& leaves);
 
   Vec3d centre_;
   double unit_;
