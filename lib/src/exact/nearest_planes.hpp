@@ -8,6 +8,7 @@
 #include <cchip/internal/exact/posed_distances.hpp>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "feature_pairs.hpp"
 #include "fine_filter.hpp"
@@ -28,6 +29,7 @@ class HalfSpace {
   /// Is the point inside or on the plane?
   bool contains(const Vec3d& v) const;
   bool contains(const Primitive& p) const;
+  bool contains(const std::vector<Vec3d>& points) const;
 
   const Vec3d& through() const { return on_plane_[0]; }
   /// Each component is off by less than 2^-50 of the greatest one, whose magnitude is from 1/2 to 1.

@@ -596,6 +596,15 @@ bool HalfSpace::contains(const Primitive& p) const {
   return true;
 }
 
+bool HalfSpace::contains(const std::vector<Vec3d>& points) const {
+  if (along_ < 0) return std::all_of(points.begin(), points.end(), [this](const Vec3d& v) { return contains(v); });
+  const double sign = rounded_[along_] > 0 ? 1 : -1;
+  const double most = sign * through()[along_];
+  bool all = true;  // without branches
+  for (const Vec3d& v : points) all = all & (sign * v[along_] <= most);
+  return all;
+}
+
 NearestPlanes::NearestPlanes(const PosedDistances& distances, const Primitive& a, const Primitive& b) {
   const PosedDistances::Pair pair(distances, a, b);
   const std::optional<PosedDistances::Pair::Fine> fine = pair.fine();

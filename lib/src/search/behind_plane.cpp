@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "behind_plane.hpp"
 
-#include <algorithm>
-#include <vector>
-
 #include "exact/ieee.hpp"
 
 namespace cchip {
@@ -26,10 +23,8 @@ bool BehindPlane::contains_line(const bvh::SupportLine& line) {
 }
 
 bool BehindPlane::contains_all() {
-  const std::vector<Vec3d>& vertices = side_.mesh.vertices;
   // Vertices that no face uses may be anywhere.
-  return std::all_of(vertices.begin(), vertices.end(), [this](const Vec3d& v) { return space_.contains(v); }) ||
-         contains(side_.tree.root());
+  return space_.contains(side_.mesh.vertices) || contains(side_.tree.root());
 }
 
 bool BehindPlane::contains(bvh::NodeRef node) {

@@ -14,13 +14,11 @@ static_assert(bins <= 32);        // a bit each
 constexpr std::size_t width = 4;  // children of a node
 
 struct Box {
-  /// The least coordinates, then the greatest ones negated: one loop without branches, which compilers vectorise.
-  alignas(16) std::array<double, 6> bound;
-  Box() { bound.fill(std::numeric_limits<double>::infinity()); }
-  explicit Box(const Vec3d& v) : bound{v.x(), v.y(), v.z(), -v.x(), -v.y(), -v.z()} {}
-  void add(const Box& box) {
-    for (std::size_t i = 0; i < 6; ++i) bound[i] = box.bound[i] < bound[i] ? box.bound[i] : bound[i];
-  }
+  /// The least coordinates, then the greatest ones negated: Eigen vectorises an even number of them.
+  Eigen::Array<double, 6, 1> bound = decltype(bound)::Constant(std::numeric_limits<double>::infinity());
+  Box() = default;
+  explicit Box(const Vec3d& v) { bound << v.array(), -v.array(); }
+  void add(const Box& box) { bound = bound.min(box.bound); }
   Vec3d extent() const { return {-bound[3] - bound[0], -bound[4] - bound[1], -bound[5] - bound[2]}; }
   /// Half the surface; 0 for an empty box.
   double area() const {
@@ -157,9 +155,8 @@ class Builder {
 
   /// Into bins, or none if the centres are too close together or too far apart along the axis.
   static bool bins_along(int axis, const Box& centres, Split& split) {
-    const auto at = static_cast<std::size_t>(axis);
     split.axis = axis;
-    split.least = centres.bound[at];
+    split.least = centres.bound[axis];
     split.scale = bins / centres.extent()[axis];
     return split.scale > 0 && split.scale < std::numeric_limits<double>::infinity();
   }
@@ -204,7 +201,8 @@ class Builder {
           bin = {items_[i].box, 1};
           is_filled |= 1U << number;
         } else {
-          bin.add({items_[i].box, 1});
+          bin.box.add(items_[i].box);
+          ++bin.count;
         }
       }
       std::array<int, bins> filled;
