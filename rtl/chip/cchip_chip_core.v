@@ -60,12 +60,7 @@ module cchip_chip_core #(
     // 1: simulated reconfiguration (see cchip_pr_slot); legal: 0, 1
     parameter integer SIMULATION = 0,
     parameter integer SEED = 1,  // start of its random numbers; legal: any
-    parameter integer DATA_W = 128,  // width of the data buses (bit); legal: 128, 256, 512
-    // ARCACHE: 3 normal memory, 15 a coherent port; legal: 0..15
-    parameter integer AXI_ARCACHE = 3,
-    // AWCACHE: 2 normal memory, 15 a coherent port; legal: 0..15
-    parameter integer AXI_AWCACHE = 2,
-    parameter integer AXI_PROT = 0  // AxPROT: 0 secure, 2 non-secure; legal: 0..7
+    parameter integer DATA_W = 128  // width of the data buses (bit); legal: 128, 256, 512
 ) (
     input  wire                           clk,                 // clock, rising edge
     input  wire                           rst,                 // synchronous reset, active high
@@ -152,10 +147,6 @@ module cchip_chip_core #(
     output wire [       $clog2(MISSES):0] m_axi_arid,          // ID: {client, slot}
     output wire [                   63:0] m_axi_araddr,        // address, a multiple of 64
     output wire [                    7:0] m_axi_arlen,         // beats of a line - 1
-    output wire [                    2:0] m_axi_arsize,        // whole beats
-    output wire [                    1:0] m_axi_arburst,       // INCR
-    output wire [                    3:0] m_axi_arcache,       // normal, not cacheable, bufferable
-    output wire [                    2:0] m_axi_arprot,        // unprivileged, secure, data
     input  wire                           m_axi_rvalid,        // read data: valid
     output wire                           m_axi_rready,        // taken
     input  wire [       $clog2(MISSES):0] m_axi_rid,           // ID
@@ -167,10 +158,6 @@ module cchip_chip_core #(
     output wire                           m_axi_awid,          // 0
     output wire [                   63:0] m_axi_awaddr,        // address, a multiple of the beat
     output wire [                    7:0] m_axi_awlen,         // 0: one beat
-    output wire [                    2:0] m_axi_awsize,        // whole beats
-    output wire [                    1:0] m_axi_awburst,       // INCR
-    output wire [                    3:0] m_axi_awcache,       // normal, not cacheable, bufferable
-    output wire [                    2:0] m_axi_awprot,        // unprivileged, secure, data
     output wire                           m_axi_wvalid,        // write data: valid
     input  wire                           m_axi_wready,        // taken
     output wire [             DATA_W-1:0] m_axi_wdata,         // data
@@ -226,11 +213,9 @@ module cchip_chip_core #(
   wire [DATA_W-1:0] beat_data;
   wire [2*MISSES-1:0] outstanding_reads;
   cchip_axi_read #(
-      .CLIENTS    (2),
-      .SLOTS      (MISSES),
-      .DATA_W     (DATA_W),
-      .AXI_ARCACHE(AXI_ARCACHE),
-      .AXI_PROT   (AXI_PROT)
+      .CLIENTS(2),
+      .SLOTS  (MISSES),
+      .DATA_W (DATA_W)
   ) u_read (
       .clk          (clk),
       .rst          (block_rst[READ]),
@@ -251,10 +236,6 @@ module cchip_chip_core #(
       .m_axi_arid   (m_axi_arid),
       .m_axi_araddr (m_axi_araddr),
       .m_axi_arlen  (m_axi_arlen),
-      .m_axi_arsize (m_axi_arsize),
-      .m_axi_arburst(m_axi_arburst),
-      .m_axi_arcache(m_axi_arcache),
-      .m_axi_arprot (m_axi_arprot),
       .m_axi_rvalid (m_axi_rvalid),
       .m_axi_rready (m_axi_rready),
       .m_axi_rid    (m_axi_rid),
@@ -669,9 +650,7 @@ module cchip_chip_core #(
       .CLIENTS    (1),
       .DATA_W     (DATA_W),
       .OUTSTANDING(16),
-      .ID_W       (1),
-      .AXI_AWCACHE(AXI_AWCACHE),
-      .AXI_PROT   (AXI_PROT)
+      .ID_W       (1)
   ) u_write (
       .clk          (clk),
       .rst          (block_rst[WRITE]),
@@ -690,10 +669,6 @@ module cchip_chip_core #(
       .m_axi_awid   (m_axi_awid),
       .m_axi_awaddr (m_axi_awaddr),
       .m_axi_awlen  (m_axi_awlen),
-      .m_axi_awsize (m_axi_awsize),
-      .m_axi_awburst(m_axi_awburst),
-      .m_axi_awcache(m_axi_awcache),
-      .m_axi_awprot (m_axi_awprot),
       .m_axi_wvalid (m_axi_wvalid),
       .m_axi_wready (m_axi_wready),
       .m_axi_wdata  (m_axi_wdata),

@@ -24,10 +24,7 @@ module cchip_swaps #(
     parameter integer SWAPS = 1,        // 0: there are none, every output is 0; legal: 0, 1
     parameter integer COUNT_W = 8,      // width of the number of waiting pairs (bit); legal: 1..16
     parameter integer CFG_W = 8,        // width of the configuration port (bit); legal: 8, 32
-    parameter integer CFG_DIVIDER = 2,  // clocks per word of the port; legal: from 1 on
-    // ARCACHE: 3 normal memory, 15 a coherent port; legal: 0..15
-    parameter integer AXI_ARCACHE = 3,
-    parameter integer AXI_PROT = 0      // AxPROT: 0 secure, 2 non-secure; legal: 0..7
+    parameter integer CFG_DIVIDER = 2   // clocks per word of the port; legal: from 1 on
 ) (
     input  wire                                 clk,             // clock, rising edge
     input  wire                                 rst,             // synchronous reset, active high
@@ -94,10 +91,6 @@ module cchip_swaps #(
     input  wire                                 m_axi_arready,   // AXI4 read, address
     output wire [                         31:0] m_axi_araddr,    // AXI4 read, address, byte
     output wire [                          7:0] m_axi_arlen,     // AXI4 read, beats - 1, at most 15
-    output wire [                          2:0] m_axi_arsize,    // AXI4 read, 2: 4 bytes per beat
-    output wire [                          1:0] m_axi_arburst,   // AXI4 read, 1: INCR
-    output wire [                          3:0] m_axi_arcache,   // AXI4 read, constant
-    output wire [                          2:0] m_axi_arprot,    // AXI4 read, constant
     input  wire                                 m_axi_rvalid,    // AXI4 read, data
     output wire                                 m_axi_rready,    // AXI4 read, data
     input  wire [                         31:0] m_axi_rdata,     // AXI4 read, data
@@ -135,10 +128,6 @@ module cchip_swaps #(
       assign m_axi_arvalid = 1'b0;
       assign m_axi_araddr  = 32'd0;
       assign m_axi_arlen   = 8'd0;
-      assign m_axi_arsize  = 3'd0;
-      assign m_axi_arburst = 2'd0;
-      assign m_axi_arcache = 4'd0;
-      assign m_axi_arprot  = 3'd0;
       assign m_axi_rready  = 1'b0;
       assign cfg_valid     = 1'b0;
       assign cfg_data      = {CFG_W{1'b0}};
@@ -248,9 +237,7 @@ module cchip_swaps #(
       cchip_config_controller #(
           .SLOTS      (SLOTS),
           .CFG_W      (CFG_W),
-          .CFG_DIVIDER(CFG_DIVIDER),
-          .AXI_ARCACHE(AXI_ARCACHE),
-          .AXI_PROT   (AXI_PROT)
+          .CFG_DIVIDER(CFG_DIVIDER)
       ) u_controller (
           .clk           (clk),
           .rst           (rst),
@@ -279,10 +266,6 @@ module cchip_swaps #(
           .m_axi_arready (m_axi_arready),
           .m_axi_araddr  (m_axi_araddr),
           .m_axi_arlen   (m_axi_arlen),
-          .m_axi_arsize  (m_axi_arsize),
-          .m_axi_arburst (m_axi_arburst),
-          .m_axi_arcache (m_axi_arcache),
-          .m_axi_arprot  (m_axi_arprot),
           .m_axi_rvalid  (m_axi_rvalid),
           .m_axi_rready  (m_axi_rready),
           .m_axi_rdata   (m_axi_rdata),

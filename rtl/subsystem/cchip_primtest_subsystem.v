@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_primtest_subsystem: primitive tests of three or four kinds in 1 to 4 slots that are
 // exchanged at run time. Pairs of any kind in, answers out, the exchange of modules done by itself
 // or by software.
@@ -141,6 +142,16 @@ module cchip_primtest_subsystem #(
   localparam [31:0] PORT_W = CFG_W;
   localparam [31:0] GRID_W = COORD_W;
   localparam [31:0] DEPTH = QUEUE_DEPTH;
+
+  // ---- what every address says: INCR bursts of whole beats
+  localparam [31:0] ARCACHE = AXI_ARCACHE;
+  localparam [31:0] PROT = AXI_PROT;
+  `CCHIP_REFUSE(AXI_ARCACHE < 0 || AXI_ARCACHE > 15, cchip_error_AXI_ARCACHE_must_be_0_to_15)
+  `CCHIP_REFUSE(AXI_PROT < 0 || AXI_PROT > 7, cchip_error_AXI_PROT_must_be_0_to_7)
+  assign m_axi_arsize  = 3'b010;
+  assign m_axi_arburst = 2'b01;
+  assign m_axi_arcache = ARCACHE[3:0];
+  assign m_axi_arprot  = PROT[2:0];
 
   // ---- pairs that wait: descriptors in queues, vertices in the operand memory
   wire [KINDS:0] some, queue_room, kind;
@@ -379,9 +390,7 @@ module cchip_primtest_subsystem #(
       .SLOTS      (SLOTS),
       .COUNT_W    (COUNT_W),
       .CFG_W      (CFG_W),
-      .CFG_DIVIDER(CFG_DIVIDER),
-      .AXI_ARCACHE(AXI_ARCACHE),
-      .AXI_PROT   (AXI_PROT)
+      .CFG_DIVIDER(CFG_DIVIDER)
   ) u_swaps (
       .clk           (clk),
       .rst           (rst),
@@ -427,10 +436,6 @@ module cchip_primtest_subsystem #(
       .m_axi_arready (m_axi_arready),
       .m_axi_araddr  (m_axi_araddr),
       .m_axi_arlen   (m_axi_arlen),
-      .m_axi_arsize  (m_axi_arsize),
-      .m_axi_arburst (m_axi_arburst),
-      .m_axi_arcache (m_axi_arcache),
-      .m_axi_arprot  (m_axi_arprot),
       .m_axi_rvalid  (m_axi_rvalid),
       .m_axi_rready  (m_axi_rready),
       .m_axi_rdata   (m_axi_rdata),
