@@ -459,10 +459,8 @@ module cchip_chip #(
   localparam integer COUNT_W = $clog2(QUEUE_DEPTH + 1);
   wire [3*COUNT_W-1:0] waiting;
   wire [2:0] full, no_provider;  // of the kinds 1, 2, 3
-  wire [SLOTS-1:0] stop, decouple, hold_reset, roc_start, quiet, roc_busy;
-  wire [`CCHIP_KIND_W*SLOTS-1:0] slot_module;
-  wire [`CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id;
-  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] slot_lost;
+  wire [`CCHIP_TO_SLOTS_W(SLOTS)-1:0] to_slots;
+  wire [`CCHIP_FROM_SLOTS_W(SLOTS)-1:0] from_slots;
   cchip_swaps #(
       .SLOTS      (SLOTS),
       .SWAPS      (SWAPS),
@@ -475,16 +473,8 @@ module cchip_chip #(
       .waiting       (waiting),
       .full          (full),
       .no_provider   (no_provider),
-      .slot_module   (slot_module),
-      .stop          (stop),
-      .decouple      (decouple),
-      .hold_reset    (hold_reset),
-      .roc_start     (roc_start),
-      .quiet         (quiet),
-      .decoupled     (slot_decoupled[SLOTS-1:0]),
-      .roc_busy      (roc_busy),
-      .region_rm_id  (region_rm_id),
-      .slot_lost     (slot_lost),
+      .to_slots      (to_slots),
+      .from_slots    (from_slots),
       .phase         (slot_phase),
       .clear         (clear),
       .abort_swap    (swap_abort),
@@ -596,15 +586,8 @@ module cchip_chip #(
       .swap_waiting        (waiting),
       .swap_full           (full),
       .no_provider         (no_provider),
-      .slot_module         (slot_module),
-      .slot_stop           (stop),
-      .slot_decouple       (decouple),
-      .slot_hold_reset     (hold_reset),
-      .slot_roc_start      (roc_start),
-      .slot_quiet          (quiet),
-      .slot_roc_busy       (roc_busy),
-      .slot_region_rm_id   (region_rm_id),
-      .slot_lost           (slot_lost),
+      .to_slots            (to_slots),
+      .from_slots          (from_slots),
       .cfg_valid           (cfg_valid),
       .cfg_data            (cfg_data),
       .m_axi_arvalid       (m_axi_arvalid),

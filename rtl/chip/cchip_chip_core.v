@@ -130,15 +130,8 @@ module cchip_chip_core #(
     output wire [                    2:0] swap_full,
     // of kinds 1, 2, 3, see cchip_swaps; the following, too
     input  wire [                    2:0] no_provider,
-    output wire [`CCHIP_KIND_W*SLOTS-1:0] slot_module,         // module that a slot shows
-    input  wire [              SLOTS-1:0] slot_stop,           // the slot gets no further pairs
-    input  wire [              SLOTS-1:0] slot_decouple,       // the slot is cut off
-    input  wire [              SLOTS-1:0] slot_hold_reset,     // the slot is held in reset
-    input  wire [              SLOTS-1:0] slot_roc_start,      // its reset on configuration begins
-    output wire [              SLOTS-1:0] slot_quiet,          // it has no pairs
-    output wire [              SLOTS-1:0] slot_roc_busy,       // its reset on configuration lasts
-    output wire [`CCHIP_RM_ID_W*SLOTS-1:0] slot_region_rm_id,  // module in the partition
-    output wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] slot_lost,     // pairs that it gave up
+    input  wire [`CCHIP_TO_SLOTS_W(SLOTS)-1:0] to_slots,  // see cchip_slots
+    output wire [`CCHIP_FROM_SLOTS_W(SLOTS)-1:0] from_slots,  // see cchip_slots
     input  wire                           cfg_valid,  // a word is written to the configuration port
     input  wire [              CFG_W-1:0] cfg_data,            // the word
     // ---- memory
@@ -567,15 +560,8 @@ module cchip_chip_core #(
       .rm_id           (slot_rm_id),
       .decoupled       (slot_decoupled),
       .no_provider     (no_provider),
-      .slot_module     (slot_module),
-      .stop            (slot_stop),
-      .decouple        (slot_decouple),
-      .hold_reset      (slot_hold_reset),
-      .roc_start       (slot_roc_start),
-      .quiet           (slot_quiet),
-      .roc_busy        (slot_roc_busy),
-      .region_rm_id    (slot_region_rm_id),
-      .slot_lost       (slot_lost),
+      .to_slots        (to_slots),
+      .from_slots      (from_slots),
       .cfg_valid       (cfg_valid),
       .cfg_data        (cfg_data)
   );

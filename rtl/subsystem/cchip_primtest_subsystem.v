@@ -325,11 +325,9 @@ module cchip_primtest_subsystem #(
   always @(posedge clk) irq_q <= ~rst & ~status_write & |(status & status_enable);
 
   // ---- slots and swaps
-  wire [SLOTS-1:0] stop, decouple, hold_reset, roc_start, quiet, roc_busy;
+  wire [`CCHIP_TO_SLOTS_W(SLOTS)-1:0] to_slots;
+  wire [`CCHIP_FROM_SLOTS_W(SLOTS)-1:0] from_slots;
   wire [KINDS-1:0] no_provider;  // of the kinds from 1 on
-  wire [`CCHIP_KIND_W*SLOTS-1:0] slot_module;
-  wire [`CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id;
-  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] slot_lost;
   cchip_slots #(
       .COORD_W            (COORD_W),
       .SUBSTAGES          (SUBSTAGES),
@@ -372,15 +370,8 @@ module cchip_primtest_subsystem #(
       .rm_id           (rm_id),
       .decoupled       (decoupled),
       .no_provider     (no_provider),
-      .slot_module     (slot_module),
-      .stop            (stop),
-      .decouple        (decouple),
-      .hold_reset      (hold_reset),
-      .roc_start       (roc_start),
-      .quiet           (quiet),
-      .roc_busy        (roc_busy),
-      .region_rm_id    (region_rm_id),
-      .slot_lost       (slot_lost),
+      .to_slots        (to_slots),
+      .from_slots      (from_slots),
       .cfg_valid       (cfg_valid),
       .cfg_data        (cfg_data)
   );
@@ -397,16 +388,8 @@ module cchip_primtest_subsystem #(
       .waiting       (waiting[COUNT_W+:KINDS*COUNT_W]),
       .full          (~queue_room[KINDS:1]),
       .no_provider   (no_provider),
-      .slot_module   (slot_module),
-      .stop          (stop),
-      .decouple      (decouple),
-      .hold_reset    (hold_reset),
-      .roc_start     (roc_start),
-      .quiet         (quiet),
-      .decoupled     (decoupled[SLOTS-1:0]),
-      .roc_busy      (roc_busy),
-      .region_rm_id  (region_rm_id),
-      .slot_lost     (slot_lost),
+      .to_slots      (to_slots),
+      .from_slots    (from_slots),
       .phase         (phase),
       .clear         (clear),
       .abort_swap    (abort_swap),
