@@ -113,8 +113,8 @@ LIMITS = {
     ("cchip_pose_setup", "difference"): lambda p: (0, (1 << 18) - 1, "b >= c: they are sorted"),
     ("cchip_bv_offset", "step_q3"): lambda p: (
         -1, 18, "the grid's step is at least that of B less one, at most that of A or B"),
-    ("cchip_bv_offset", "x_q3"): lambda p: (0, (1 << 17) - 1, "epsilon is at least 1: t is rounded"),
-    ("cchip_bv_offset", "low"): lambda p: (0, 8, "step_q3 + 1 where step_q3 is below 7"),
+    ("cchip_bv_offset", "error_q3"): lambda p: (0, (1 << 17) - 1, "epsilon is at least 1: t is rounded"),
+    ("cchip_bv_offset", "least_1"): lambda p: (0, 8, "step_q3 + 1 where step_q3 is below 7"),
     ("cchip_vertex_transform", "gen_row[].gen_whole.u_dot.xy_q"): lambda p: (
         -(1 << 54), 1 << 54, "two terms of at most 2^30 2^23"),
     ("cchip_vertex_transform", "gen_axis[].u_a.d"): lambda p: (-3 << 53, 3 << 53, "three terms of at most 2^30 2^23"),
@@ -168,12 +168,12 @@ REASONS = [
      "two products in one: f face + c corner is at most 14 (f + c) < 2^11, because b + c <= 2 + 2^-5; f corner < 2^11 "
      "is below it"),
     ("cchip_bv_lane_b", r"exponent_q1", "at scales of 3 and more the cuts are 0"),
-    ("cchip_bv_offset", r"e_q1\[3:0\] - 4'd6|y\[3:0\] - 4'd6", "read only where it is 0..4 and 0..2"),
-    ("cchip_bv_offset", r"y\[2:0\] \+ 3'd1", "y is -1..5 where it is read: y + 1 modulo 8"),
+    ("cchip_bv_offset", r"e_q1\[3:0\] - 4'd6|over_b\[3:0\] - 4'd6", "read only where it is 0..4 and 0..2"),
+    ("cchip_bv_offset", r"over_b\[2:0\] \+ 3'd1", "over_b is -1..5 where it is read: over_b + 1 modulo 8"),
     ("cchip_bv_offset", r"bits \d+:\d of shifted",
      "narrow_q8 says whether the bits above are copies; if not, the pair is far"),
-    ("cchip_bv_offset", r"bits 4:0 of next|bits 3:0 of (next|above)",
-     "step_q3 + 1 is 0..19; low and high are read where they are 0..11"),
+    ("cchip_bv_offset", r"bits 4:0 of step_1|bits 3:0 of (step_1|over_7)",
+     "step_q3 + 1 is 0..19; least_1 and high are read where they are 0..11"),
     ("", r"~\(15'h7FFF << .*|15'h7FFF << .*", "a mask"),
     ("", r".*1'b1\} << log\[4:2\].*|u_bound.u_shift.d", "one bit of a group: log is below 4 GROUPS"),
     ("cchip_normaliser", r"steps\[3:0\] \+ 4'd1", "read where steps is at most 14"),

@@ -54,65 +54,60 @@ module cchip_bv_offset (
   `CCHIP_REFUSE(`CCHIP_MUL18_LATENCY != 2, cchip_error_bv_offset_needs_CCHIP_MUL18_LATENCY_2)
 
   // ---- clocks 0 to 4: e = log2 (B's step / A's), scales, and the grid's step, -1..18
-  reg start_q1, start_q2, start_q3;
+  reg [11:1] start_q;
   reg signed [6:0] e_q1;
-  reg [4:0] b_step_q1, b_step_q2;
-  reg [3:0] shift_q1, shift_q2;
-  reg [6:0] epsilon_q1, epsilon_q2;
+  wire [4:0] b_step_q2;
+  wire [3:0] shift_q3;
+  wire [6:0] epsilon_q2;
   wire a_point = e_q1 > 7'sd5;
   wire b_point = e_q1 < -7'sd5;
-  wire signed [6:0] least_y = e_q1[0] ? -7'sd1 : 7'sd0;  // for e >= 1
-  wire signed [6:0] y = a_point ? -7'sd1 : e_q1 < 7'sd1 ? -e_q1 : least_y;
+  wire signed [6:0] least_over_b = e_q1[0] ? -7'sd1 : 7'sd0;  // for e >= 1
+  // logarithm to base 2 of the grid's step in steps of B
+  wire signed [6:0] over_b = a_point ? -7'sd1 : e_q1 < 7'sd1 ? -e_q1 : least_over_b;
   reg [1:0] a_scale_q2, a_scale_q3, a_scale_q4, a_scale_q5;
   reg [2:0] b_scale_q2, b_scale_q3, b_scale_q4, b_scale_q5;
-  reg signed [6:0] y_q2, step_q3;
+  reg signed [6:0] over_b_q2, step_q3;
   reg [5:0] a_more_q2, a_more_q3;  // slack for a box that counts as a point
   reg [3:0] b_more_q2, b_more_q3;
-  reg [3:0] shift_q3;
-  reg [16:0] x_q3;  // 1024 epsilon - 1
+  reg [16:0] error_q3;  // 1024 epsilon - 1
   // of the node pair from its fourth clock on
-  reg [3:0] low_q4;  // least of step and 7, plus 1
-  reg [3:0] high_q4, high_q5, high_q6, high_q7;  // step - 7, at least 0
+  reg [3:0] least_1_q4;  // least of step and 7, plus 1
+  reg [3:0] high_q4;  // step - 7, at least 0
+  wire [3:0] high_q7;
   reg [1:0] high_q8;
   reg [4:0] amount_q4;
-  reg [4:0] g_q4;
-  reg [16:0] x_q4;
+  reg [4:0] step_1_q4;
+  reg [16:0] error_q4;
   reg [5:0] a_more_q4;
   reg [3:0] b_more_q4;
-  wire signed [6:0] above = step_q3 - 7'sd7;
-  wire signed [6:0] next = step_q3 + 7'sd1;
-  wire [3:0] low = above[6] ? next[3:0] : 4'd8;
+  wire signed [6:0] over_7 = step_q3 - 7'sd7;
+  wire signed [6:0] step_1 = step_q3 + 7'sd1;
+  wire [3:0] least_1 = over_7[6] ? step_1[3:0] : 4'd8;
+  cchip_delay #(.WIDTH(5), .DEPTH(2)) u_b_step (.clk(clk), .rst(1'b0), .d(b_step), .q(b_step_q2));
+  cchip_delay #(.WIDTH(4), .DEPTH(3)) u_shift (.clk(clk), .rst(1'b0), .d(shift), .q(shift_q3));
+  cchip_delay #(.WIDTH(7), .DEPTH(2)) u_error (.clk(clk), .rst(1'b0), .d(epsilon), .q(epsilon_q2));
   always @(posedge clk) begin
-    start_q1   <= start;
-    start_q2   <= start_q1;
-    start_q3   <= start_q2;
+    start_q    <= {start_q[10:1], start};
     e_q1       <= $signed({2'd0, b_step}) - $signed({2'd0, a_step}) + $signed({3'd0, shift});
-    b_step_q1  <= b_step;
-    b_step_q2  <= b_step_q1;
-    shift_q1   <= shift;
-    shift_q2   <= shift_q1;
-    shift_q3   <= shift_q2;
-    epsilon_q1 <= epsilon;
-    epsilon_q2 <= epsilon_q1;
     a_scale_q2 <= a_point ? 2'd3 : e_q1 < 7'sd2 ? 2'd0 : e_q1 < 7'sd4 ? 2'd1 : 2'd2;
-    b_scale_q2 <= b_point ? 3'd7 : y[2:0] + 3'd1;
-    y_q2       <= y;
+    b_scale_q2 <= b_point ? 3'd7 : over_b[2:0] + 3'd1;
+    over_b_q2  <= over_b;
     a_more_q2  <= !a_point ? 6'd0 : e_q1 > 7'sd10 ? 6'd1 : 6'd32 >> (e_q1[3:0] - 4'd6);
-    b_more_q2  <= !b_point ? 4'd0 : e_q1 < -7'sd8 ? 4'd1 : 4'd8 >> (y[3:0] - 4'd6);
-    step_q3    <= $signed({2'd0, b_step_q2}) + y_q2;
+    b_more_q2  <= !b_point ? 4'd0 : e_q1 < -7'sd8 ? 4'd1 : 4'd8 >> (over_b[3:0] - 4'd6);
+    step_q3    <= $signed({2'd0, b_step_q2}) + over_b_q2;
     a_scale_q3 <= a_scale_q2;
     b_scale_q3 <= b_scale_q2;
     a_more_q3  <= a_more_q2;
     b_more_q3  <= b_more_q2;
-    x_q3       <= {epsilon_q2, 10'd0} - 17'd1;
-    if (start_q3) begin
+    error_q3   <= {epsilon_q2, 10'd0} - 17'd1;
+    if (start_q[3]) begin
       a_scale_q4 <= a_scale_q3;
       b_scale_q4 <= b_scale_q3;
-      low_q4     <= low;
-      high_q4    <= above[6] ? 4'd0 : above[3:0];
-      amount_q4  <= {1'b0, shift_q3} + {1'b0, low} + 5'd3;
-      g_q4       <= next[4:0];
-      x_q4       <= x_q3;
+      least_1_q4 <= least_1;
+      high_q4    <= over_7[6] ? 4'd0 : over_7[3:0];
+      amount_q4  <= {1'b0, shift_q3} + {1'b0, least_1} + 5'd3;
+      step_1_q4  <= step_1[4:0];
+      error_q4   <= error_q3;
       a_more_q4  <= a_more_q3;
       b_more_q4  <= b_more_q3;
     end
@@ -122,37 +117,31 @@ module cchip_bv_offset (
   assign a_scale = a_scale_q5;
   assign b_scale = b_scale_q5;
 
-  // ---- clocks 4 to 8: the slack, 1 + (x / 2^(g + 5) + 1) / 2 and what points need
-  reg [11:0] x_q5;
+  // ---- clocks 4 to 8: the slack, 1 + (error / 2^(step + 6) + 1) / 2 and what points need
+  reg [11:0] error_q5;
   reg [11:0] base_q6;
-  reg [5:0] a_more_q5, a_more_q6;
-  reg [3:0] b_more_q5, b_more_q6, b_more_q7;
+  wire [5:0] a_more_q6;
+  wire [3:0] b_more_q7;
+  cchip_delay #(.WIDTH(6), .DEPTH(2)) u_a (.clk(clk), .rst(1'b0), .d(a_more_q4), .q(a_more_q6));
+  cchip_delay #(.WIDTH(4), .DEPTH(3)) u_b (.clk(clk), .rst(1'b0), .d(b_more_q4), .q(b_more_q7));
   reg [12:0] slack_q7, slack_q8;
   reg [7:0] slack_q9;
-  reg near_q9, near_q10, near_q11, near_q12;
+  reg near_q9;
   always @(posedge clk) begin
-    x_q5      <= x_q4[16:5] >> g_q4;
-    a_more_q5 <= a_more_q4;
-    b_more_q5 <= b_more_q4;
-    base_q6   <= {1'b0, x_q5[11:1]} + {11'd0, x_q5[0]};
-    a_more_q6 <= a_more_q5;
-    b_more_q6 <= b_more_q5;
-    slack_q7  <= {1'b0, base_q6} + {7'd0, a_more_q6} + 13'd1;
-    b_more_q7 <= b_more_q6;
-    slack_q8  <= slack_q7 + {9'd0, b_more_q7};
-    slack_q9  <= slack_q8[7:0] & {8{slack_q8[12:8] == 5'd0}};
-    near_q9   <= slack_q8[12:8] != 5'd0;
-    near_q10  <= near_q9;
-    near_q11  <= near_q10;
-    near_q12  <= near_q11;
+    error_q5 <= error_q4[16:5] >> step_1_q4;
+    base_q6  <= {1'b0, error_q5[11:1]} + {11'd0, error_q5[0]};
+    slack_q7 <= {1'b0, base_q6} + {7'd0, a_more_q6} + 13'd1;
+    slack_q8 <= slack_q7 + {9'd0, b_more_q7};
+    slack_q9 <= slack_q8[7:0] & {8{slack_q8[12:8] == 5'd0}};
+    near_q9  <= slack_q8[12:8] != 5'd0;
   end
+  cchip_delay #(.DEPTH(3)) u_near (.clk(clk), .rst(1'b0), .d(near_q9), .q(is_near));
   assign slack = slack_q9;
-  assign is_near = near_q12;
 
   // ---- the offset, one axis after the other: M o_A
-  wire [17:0] origin = start ? b_origin[17:0] : start_q1 ? b_origin[35:18] : b_origin[53:36];
+  wire [17:0] origin = start ? b_origin[17:0] : start_q[1] ? b_origin[35:18] : b_origin[53:36];
   wire signed [36:0] term2[0:2];  // 35 fraction bits
-  wire [17:0] again2[0:2];
+  wire [17:0] origin_of_one[0:2];
   genvar j;
   generate
     for (j = 0; j < 3; j = j + 1) begin : gen_term
@@ -161,25 +150,28 @@ module cchip_bv_offset (
       // M_ij = 1 has no place in 18 bits and is taken for -1: 2^18 times the origin is added again.
       // That is at most one of a row, whose magnitudes add up to less than 2
       reg one_q1;
-      reg [17:0] origin_q1, again_q2;
+      reg [17:0] origin_q1, added_q2;
       always @(posedge clk) begin
         one_q1    <= ~m[18] & m[17];
         origin_q1 <= a_origin[18*j+:18];
-        again_q2  <= origin_q1 & {18{one_q1}};
+        added_q2  <= origin_q1 & {18{one_q1}};
       end
-      assign again2[j] = again_q2;
+      assign origin_of_one[j] = added_q2;
       cchip_mul18 u_mul (.clk(clk), .a(m[17:0]), .b(a_origin[18*j+:18]), .p(p));
       assign term2[j] = {p[35], p};
     end
   endgenerate
-  wire [17:0] again = again2[0] | again2[1] | again2[2];
+  wire [17:0] added = origin_of_one[0] | origin_of_one[1] | origin_of_one[2];
   reg signed [38:0] first_q3, rest_q3, turned_q4;
-  reg signed [29:0] between_q1, between_q2, between_q3, between_q4;  // t - o_B, 24 fraction bits
+  reg signed [29:0] from_b_q1;  // t - o_B, 24 fraction bits
+  wire signed [29:0] from_b_q4;
+  cchip_delay #(.WIDTH(30), .DEPTH(3)) u_t (.clk(clk), .rst(1'b0), .d(from_b_q1), .q(from_b_q4));
+  cchip_delay #(.WIDTH(4), .DEPTH(3)) u_high (.clk(clk), .rst(1'b0), .d(high_q4), .q(high_q7));
 
   // ---- clocks 4 to 9: to the grid. With s = least of step and 7: both to 2^(s - 31), then to the
   // grid's half steps
   reg signed [38:0] turned_q5, turned_q6;
-  reg signed [37:0] between_q5, between_q6;
+  reg signed [37:0] from_b_q5, from_b_q6;
   reg signed [38:0] sum_q7;
   wire signed [38:0] shifted = sum_q7 >>> {high_q7[3:2], 2'd0};
   wire [3:0] alike = {
@@ -196,24 +188,18 @@ module cchip_bv_offset (
   always @(posedge clk) begin
     first_q3 <= {{2{term2[0][36]}}, term2[0]} + {{2{term2[1][36]}}, term2[1]};
     rest_q3 <= {
-      {{2{term2[2][36]}}, term2[2][36:18]} + {{3{again[17]}}, again}, term2[2][17:0]
+      {{2{term2[2][36]}}, term2[2][36:18]} + {{3{added[17]}}, added}, term2[2][17:0]
     };
     turned_q4 <= first_q3 + rest_q3;
-    between_q1 <= {row_t[28], row_t} - {{6{origin[17]}}, origin, 6'd0};
-    between_q2 <= between_q1;
-    between_q3 <= between_q2;
-    between_q4 <= between_q3;
+    from_b_q1 <= {row_t[28], row_t} - {{6{origin[17]}}, origin, 6'd0};
     // turned >> (shift + 4 + s), by eights and by ones
     turned_q5 <= turned_q4 >>> {amount_q4[4:3], 3'd0};
     fine_q5 <= amount_q4[2:0];
     turned_q6 <= turned_q5 >>> fine_q5;
-    // between << (7 - s)
-    between_q5 <= {{8{between_q4[29]}}, between_q4} <<< (4'd8 - low_q4);
-    between_q6 <= between_q5;
-    sum_q7 <= turned_q6 + $signed({between_q6[37], between_q6});
-    high_q5 <= high_q4;
-    high_q6 <= high_q5;
-    high_q7 <= high_q6;
+    // from_b << (7 - s)
+    from_b_q5 <= {{8{from_b_q4[29]}}, from_b_q4} <<< (4'd8 - least_1_q4);
+    from_b_q6 <= from_b_q5;
+    sum_q7 <= turned_q6 + $signed({from_b_q6[37], from_b_q6});
     high_q8 <= high_q7[1:0];
     sum_q8 <= shifted[19:0];
     narrow_q8 <= alike[3] && (alike[2] || high_q7[3:2] == 2'd3) && (alike[1] || high_q7[3]) &&
@@ -233,19 +219,15 @@ module cchip_bv_offset (
   endfunction
 
   // ---- clocks 9 to 11: the three axes together
-  reg start_q4, start_q5, start_q6, start_q7, start_q8, start_q9, start_q10, start_q11;
   reg [16:0] axis_q10, axis_q11;
   reg far_q10, far_q11, far_q12;
   reg [50:0] offset_q12;
   always @(posedge clk) begin
-    {start_q4, start_q5, start_q6, start_q7, start_q8, start_q9, start_q10, start_q11} <= {
-      start_q3, start_q4, start_q5, start_q6, start_q7, start_q8, start_q9, start_q10
-    };
     axis_q10 <= axis_q9;
     axis_q11 <= axis_q10;
     far_q10  <= far_q9;
     far_q11  <= far_q10;
-    if (start_q11) begin
+    if (start_q[11]) begin
       offset_q12 <= {axis_q9, axis_q10, axis_q11};
       far_q12    <= far_q9 | far_q10 | far_q11;
     end
@@ -253,7 +235,7 @@ module cchip_bv_offset (
   assign offset = offset_q12;
   assign is_far = far_q12;
 
-  wire unused = &{1'b0, y[6:4], above[5:4], next[6:5], x_q4[4:0], shifted[38:20]};
+  wire unused = &{1'b0, over_b[6:4], over_7[5:4], step_1[6:5], error_q4[4:0], shifted[38:20]};
 
 endmodule
 `default_nettype wire

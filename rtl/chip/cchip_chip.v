@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_chip: collision detection as a device. Registers on AXI4-Lite, an interrupt, an AXI4 master
 // for memory; queries from a ring in memory, records into another one. Registers:
 // docs/hardware/chip-registers.md; how a driver uses them: docs/hardware/programmers-guide.md.
@@ -166,6 +167,26 @@ module cchip_chip #(
   localparam integer MOST_3 = SLOTS > 3 && SLOT3_RM_ID > MOST_2 ? SLOT3_RM_ID : MOST_2;
   localparam integer MOST = SWAPS != 0 ? 3 : MOST_3;
   localparam [2:0] KINDS = {MOST > 2, MOST > 1, 1'b1};
+
+  // ---- what every address says: INCR bursts of whole beats. Writes are not bufferable by default:
+  // the response comes from where the data are seen by all
+  localparam [31:0] BEAT = $clog2(DATA_W / 8);
+  localparam [31:0] ARCACHE = AXI_ARCACHE;
+  localparam [31:0] AWCACHE = AXI_AWCACHE;
+  localparam [31:0] PROT = AXI_PROT;
+  `CCHIP_REFUSE(AXI_ARCACHE < 0 || AXI_ARCACHE > 15, cchip_error_AXI_ARCACHE_must_be_0_to_15)
+  `CCHIP_REFUSE(AXI_AWCACHE < 0 || AXI_AWCACHE > 15, cchip_error_AXI_AWCACHE_must_be_0_to_15)
+  `CCHIP_REFUSE(AXI_PROT < 0 || AXI_PROT > 7, cchip_error_AXI_PROT_must_be_0_to_7)
+  assign m_axi_arsize  = BEAT[2:0];
+  assign m_axi_arburst = 2'b01;
+  assign m_axi_arcache = ARCACHE[3:0];
+  assign m_axi_arprot  = PROT[2:0];
+  assign {m_axi_awsize, m_axi_awburst, m_axi_awprot} = {m_axi_arsize, m_axi_arburst, m_axi_arprot};
+  assign m_axi_awcache = AWCACHE[3:0];
+  assign m_axi_cfg_arsize = 3'b010;
+  assign {m_axi_cfg_arburst, m_axi_cfg_arcache, m_axi_cfg_arprot} = {
+    m_axi_arburst, m_axi_arcache, m_axi_arprot
+  };
 
   // ---- registers
   wire clear, enable, reset_request, resetting, reset_done, idle;
@@ -438,34 +459,22 @@ module cchip_chip #(
   localparam integer COUNT_W = $clog2(QUEUE_DEPTH + 1);
   wire [3*COUNT_W-1:0] waiting;
   wire [2:0] full, no_provider;  // of the kinds 1, 2, 3
-  wire [SLOTS-1:0] stop, decouple, hold_reset, roc_start, quiet, roc_busy;
-  wire [`CCHIP_KIND_W*SLOTS-1:0] slot_module;
-  wire [`CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id;
-  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] slot_lost;
+  wire [`CCHIP_TO_SLOTS_W(SLOTS)-1:0] to_slots;
+  wire [`CCHIP_FROM_SLOTS_W(SLOTS)-1:0] from_slots;
   cchip_swaps #(
       .SLOTS      (SLOTS),
       .SWAPS      (SWAPS),
       .COUNT_W    (COUNT_W),
       .CFG_W      (CFG_W),
-      .CFG_DIVIDER(CFG_DIVIDER),
-      .AXI_ARCACHE(AXI_ARCACHE),
-      .AXI_PROT   (AXI_PROT)
+      .CFG_DIVIDER(CFG_DIVIDER)
   ) u_swaps (
       .clk           (clk),
       .rst           (regs_rst),
       .waiting       (waiting),
       .full          (full),
       .no_provider   (no_provider),
-      .slot_module   (slot_module),
-      .stop          (stop),
-      .decouple      (decouple),
-      .hold_reset    (hold_reset),
-      .roc_start     (roc_start),
-      .quiet         (quiet),
-      .decoupled     (slot_decoupled[SLOTS-1:0]),
-      .roc_busy      (roc_busy),
-      .region_rm_id  (region_rm_id),
-      .slot_lost     (slot_lost),
+      .to_slots      (to_slots),
+      .from_slots    (from_slots),
       .phase         (slot_phase),
       .clear         (clear),
       .abort_swap    (swap_abort),
@@ -498,10 +507,6 @@ module cchip_chip #(
       .m_axi_arready (m_axi_cfg_arready),
       .m_axi_araddr  (m_axi_cfg_araddr),
       .m_axi_arlen   (m_axi_cfg_arlen),
-      .m_axi_arsize  (m_axi_cfg_arsize),
-      .m_axi_arburst (m_axi_cfg_arburst),
-      .m_axi_arcache (m_axi_cfg_arcache),
-      .m_axi_arprot  (m_axi_cfg_arprot),
       .m_axi_rvalid  (m_axi_cfg_rvalid),
       .m_axi_rready  (m_axi_cfg_rready),
       .m_axi_rdata   (m_axi_cfg_rdata),
@@ -533,10 +538,7 @@ module cchip_chip #(
       .ROC_CYCLES  (ROC_CYCLES),
       .SIMULATION  (SIMULATION),
       .SEED        (SEED),
-      .DATA_W      (DATA_W),
-      .AXI_ARCACHE (AXI_ARCACHE),
-      .AXI_AWCACHE (AXI_AWCACHE),
-      .AXI_PROT    (AXI_PROT)
+      .DATA_W      (DATA_W)
   ) u_core (
       .clk                 (clk),
       .rst                 (rst),
@@ -584,15 +586,8 @@ module cchip_chip #(
       .swap_waiting        (waiting),
       .swap_full           (full),
       .no_provider         (no_provider),
-      .slot_module         (slot_module),
-      .slot_stop           (stop),
-      .slot_decouple       (decouple),
-      .slot_hold_reset     (hold_reset),
-      .slot_roc_start      (roc_start),
-      .slot_quiet          (quiet),
-      .slot_roc_busy       (roc_busy),
-      .slot_region_rm_id   (region_rm_id),
-      .slot_lost           (slot_lost),
+      .to_slots            (to_slots),
+      .from_slots          (from_slots),
       .cfg_valid           (cfg_valid),
       .cfg_data            (cfg_data),
       .m_axi_arvalid       (m_axi_arvalid),
@@ -600,10 +595,6 @@ module cchip_chip #(
       .m_axi_arid          (m_axi_arid),
       .m_axi_araddr        (m_axi_araddr),
       .m_axi_arlen         (m_axi_arlen),
-      .m_axi_arsize        (m_axi_arsize),
-      .m_axi_arburst       (m_axi_arburst),
-      .m_axi_arcache       (m_axi_arcache),
-      .m_axi_arprot        (m_axi_arprot),
       .m_axi_rvalid        (m_axi_rvalid),
       .m_axi_rready        (m_axi_rready),
       .m_axi_rid           (m_axi_rid),
@@ -615,10 +606,6 @@ module cchip_chip #(
       .m_axi_awid          (m_axi_awid),
       .m_axi_awaddr        (m_axi_awaddr),
       .m_axi_awlen         (m_axi_awlen),
-      .m_axi_awsize        (m_axi_awsize),
-      .m_axi_awburst       (m_axi_awburst),
-      .m_axi_awcache       (m_axi_awcache),
-      .m_axi_awprot        (m_axi_awprot),
       .m_axi_wvalid        (m_axi_wvalid),
       .m_axi_wready        (m_axi_wready),
       .m_axi_wdata         (m_axi_wdata),

@@ -60,12 +60,7 @@ module cchip_chip_core #(
     // 1: simulated reconfiguration (see cchip_pr_slot); legal: 0, 1
     parameter integer SIMULATION = 0,
     parameter integer SEED = 1,  // start of its random numbers; legal: any
-    parameter integer DATA_W = 128,  // width of the data buses (bit); legal: 128, 256, 512
-    // ARCACHE: 3 normal memory, 15 a coherent port; legal: 0..15
-    parameter integer AXI_ARCACHE = 3,
-    // AWCACHE: 2 normal memory, 15 a coherent port; legal: 0..15
-    parameter integer AXI_AWCACHE = 2,
-    parameter integer AXI_PROT = 0  // AxPROT: 0 secure, 2 non-secure; legal: 0..7
+    parameter integer DATA_W = 128  // width of the data buses (bit); legal: 128, 256, 512
 ) (
     input  wire                           clk,                 // clock, rising edge
     input  wire                           rst,                 // synchronous reset, active high
@@ -135,15 +130,8 @@ module cchip_chip_core #(
     output wire [                    2:0] swap_full,
     // of kinds 1, 2, 3, see cchip_swaps; the following, too
     input  wire [                    2:0] no_provider,
-    output wire [`CCHIP_KIND_W*SLOTS-1:0] slot_module,         // module that a slot shows
-    input  wire [              SLOTS-1:0] slot_stop,           // the slot gets no further pairs
-    input  wire [              SLOTS-1:0] slot_decouple,       // the slot is cut off
-    input  wire [              SLOTS-1:0] slot_hold_reset,     // the slot is held in reset
-    input  wire [              SLOTS-1:0] slot_roc_start,      // its reset on configuration begins
-    output wire [              SLOTS-1:0] slot_quiet,          // it has no pairs
-    output wire [              SLOTS-1:0] slot_roc_busy,       // its reset on configuration lasts
-    output wire [`CCHIP_RM_ID_W*SLOTS-1:0] slot_region_rm_id,  // module in the partition
-    output wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] slot_lost,     // pairs that it gave up
+    input  wire [`CCHIP_TO_SLOTS_W(SLOTS)-1:0] to_slots,  // see cchip_slots
+    output wire [`CCHIP_FROM_SLOTS_W(SLOTS)-1:0] from_slots,  // see cchip_slots
     input  wire                           cfg_valid,  // a word is written to the configuration port
     input  wire [              CFG_W-1:0] cfg_data,            // the word
     // ---- memory
@@ -152,10 +140,6 @@ module cchip_chip_core #(
     output wire [       $clog2(MISSES):0] m_axi_arid,          // ID: {client, slot}
     output wire [                   63:0] m_axi_araddr,        // address, a multiple of 64
     output wire [                    7:0] m_axi_arlen,         // beats of a line - 1
-    output wire [                    2:0] m_axi_arsize,        // whole beats
-    output wire [                    1:0] m_axi_arburst,       // INCR
-    output wire [                    3:0] m_axi_arcache,       // normal, not cacheable, bufferable
-    output wire [                    2:0] m_axi_arprot,        // unprivileged, secure, data
     input  wire                           m_axi_rvalid,        // read data: valid
     output wire                           m_axi_rready,        // taken
     input  wire [       $clog2(MISSES):0] m_axi_rid,           // ID
@@ -167,10 +151,6 @@ module cchip_chip_core #(
     output wire                           m_axi_awid,          // 0
     output wire [                   63:0] m_axi_awaddr,        // address, a multiple of the beat
     output wire [                    7:0] m_axi_awlen,         // 0: one beat
-    output wire [                    2:0] m_axi_awsize,        // whole beats
-    output wire [                    1:0] m_axi_awburst,       // INCR
-    output wire [                    3:0] m_axi_awcache,       // normal, not cacheable, bufferable
-    output wire [                    2:0] m_axi_awprot,        // unprivileged, secure, data
     output wire                           m_axi_wvalid,        // write data: valid
     input  wire                           m_axi_wready,        // taken
     output wire [             DATA_W-1:0] m_axi_wdata,         // data
@@ -226,11 +206,9 @@ module cchip_chip_core #(
   wire [DATA_W-1:0] beat_data;
   wire [2*MISSES-1:0] outstanding_reads;
   cchip_axi_read #(
-      .CLIENTS    (2),
-      .SLOTS      (MISSES),
-      .DATA_W     (DATA_W),
-      .AXI_ARCACHE(AXI_ARCACHE),
-      .AXI_PROT   (AXI_PROT)
+      .CLIENTS(2),
+      .SLOTS  (MISSES),
+      .DATA_W (DATA_W)
   ) u_read (
       .clk          (clk),
       .rst          (block_rst[READ]),
@@ -251,10 +229,6 @@ module cchip_chip_core #(
       .m_axi_arid   (m_axi_arid),
       .m_axi_araddr (m_axi_araddr),
       .m_axi_arlen  (m_axi_arlen),
-      .m_axi_arsize (m_axi_arsize),
-      .m_axi_arburst(m_axi_arburst),
-      .m_axi_arcache(m_axi_arcache),
-      .m_axi_arprot (m_axi_arprot),
       .m_axi_rvalid (m_axi_rvalid),
       .m_axi_rready (m_axi_rready),
       .m_axi_rid    (m_axi_rid),
@@ -586,15 +560,8 @@ module cchip_chip_core #(
       .rm_id           (slot_rm_id),
       .decoupled       (slot_decoupled),
       .no_provider     (no_provider),
-      .slot_module     (slot_module),
-      .stop            (slot_stop),
-      .decouple        (slot_decouple),
-      .hold_reset      (slot_hold_reset),
-      .roc_start       (slot_roc_start),
-      .quiet           (slot_quiet),
-      .roc_busy        (slot_roc_busy),
-      .region_rm_id    (slot_region_rm_id),
-      .slot_lost       (slot_lost),
+      .to_slots        (to_slots),
+      .from_slots      (from_slots),
       .cfg_valid       (cfg_valid),
       .cfg_data        (cfg_data)
   );
@@ -669,9 +636,7 @@ module cchip_chip_core #(
       .CLIENTS    (1),
       .DATA_W     (DATA_W),
       .OUTSTANDING(16),
-      .ID_W       (1),
-      .AXI_AWCACHE(AXI_AWCACHE),
-      .AXI_PROT   (AXI_PROT)
+      .ID_W       (1)
   ) u_write (
       .clk          (clk),
       .rst          (block_rst[WRITE]),
@@ -690,10 +655,6 @@ module cchip_chip_core #(
       .m_axi_awid   (m_axi_awid),
       .m_axi_awaddr (m_axi_awaddr),
       .m_axi_awlen  (m_axi_awlen),
-      .m_axi_awsize (m_axi_awsize),
-      .m_axi_awburst(m_axi_awburst),
-      .m_axi_awcache(m_axi_awcache),
-      .m_axi_awprot (m_axi_awprot),
       .m_axi_wvalid (m_axi_wvalid),
       .m_axi_wready (m_axi_wready),
       .m_axi_wdata  (m_axi_wdata),

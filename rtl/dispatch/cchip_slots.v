@@ -81,16 +81,13 @@ module cchip_slots #(
     //      swap asks of it and what it answers, words for the configuration port
     // bit k - 1: no slot can get the module of kind k
     input  wire [                 KINDS-1:0] no_provider,
-    output wire [   `CCHIP_KIND_W*SLOTS-1:0] slot_module,       // module that a slot shows, 0: none
-    input  wire [                 SLOTS-1:0] stop,              // the slot gets no further pairs
-    input  wire [                 SLOTS-1:0] decouple,          // the slot is cut off from the rest
-    input  wire [                 SLOTS-1:0] hold_reset,        // the slot is held in reset
-    // its reset on configuration begins, one clock
-    input  wire [                 SLOTS-1:0] roc_start,
-    output wire [                 SLOTS-1:0] quiet,             // it has no pairs and will get none
-    output wire [                 SLOTS-1:0] roc_busy,          // its reset on configuration lasts
-    output wire [  `CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id,      // module in the partition
-    output wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] slot_lost,  // pairs that it gave up in this swap
+    // {stop: no further pairs, decouple: cut off from the rest, hold_reset: held in reset,
+    // roc_start: its reset on configuration begins, one clock}, a bit per slot each
+    input  wire [`CCHIP_TO_SLOTS_W(SLOTS)-1:0] to_slots,
+    // {quiet: it has no pairs and will get none, decoupled: it is cut off and all its pairs are
+    // answered, roc_busy: its reset on configuration lasts, module in the partition, pairs that it
+    // gave up in this swap, module that it shows, 0: none}, a field per slot each
+    output wire [`CCHIP_FROM_SLOTS_W(SLOTS)-1:0] from_slots,
     // a word is written to the configuration port
     input  wire                              cfg_valid,
     input  wire [                 CFG_W-1:0] cfg_data           // the word
@@ -106,12 +103,19 @@ module cchip_slots #(
   `CCHIP_REFUSE(SWAPS != 0 && SWAPS != 1, cchip_error_slots_SWAPS_must_be_0_or_1)
   `CCHIP_REFUSE(KINDS != 3 && KINDS != 4, cchip_error_slots_KINDS_must_be_3_or_4)
 
+  wire [SLOTS-1:0] stop, decouple, hold_reset, roc_start, quiet, slots_decoupled, roc_busy;
+  wire [ID_W*SLOTS-1:0] region_rm_id;
+  wire [COUNT_OF_PAIRS_W*SLOTS-1:0] lost;
+  wire [KIND_W*SLOTS-1:0] slot_module;
+  assign {stop, decouple, hold_reset, roc_start} = to_slots;
+  assign from_slots = {quiet, slots_decoupled, roc_busy, region_rm_id, lost, slot_module};
+
   // ---- dispatch
   wire [SLOTS-1:0] vertex_valid, result_valid;
   wire vertex_first, vertex_last;
   wire [SLOTS*`CCHIP_PAIR_ID_W-1:0] vertex_id;
   wire [SLOTS*RESULT_W-1:0] result;
-  wire [SLOTS-1:0] slots_decoupled, idle;
+  wire [SLOTS-1:0] idle;
   wire [SLOTS-1:0] region_decoupled;  // slots_decoupled: when all its pairs are answered, too
   wire [ID_W*SLOTS-1:0] slot_rm_id;
   wire [COUNT_OF_PAIRS_W*SLOTS-1:0] slot_outstanding;
@@ -164,7 +168,7 @@ module cchip_slots #(
       .decouple        (cut_off),
       .decoupled       (slots_decoupled),
       .outstanding     (slot_outstanding),
-      .lost            (slot_lost),
+      .lost            (lost),
       .answered        (answered),
       .answered_module (answered_module),
       .refused_kind    (refused_kind),

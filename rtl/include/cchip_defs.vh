@@ -286,6 +286,12 @@
 `define CCHIP_POINT_W(w) (3 * (w))
 // s_pair_a, s_pair_b: vertex i at bit POINT_W i [bit]
 `define CCHIP_PRIMITIVE_W(w) (`CCHIP_VERTICES * `CCHIP_POINT_W((w)))
+// what a swap asks of the slots: {stop, decouple, hold_reset, roc_start}, each a bit per slot [bit]
+`define CCHIP_TO_SLOTS_W(slots) ((slots) * 4)
+// what the slots answer: {quiet, decoupled, roc_busy, region_rm_id, lost, module}, each a field per
+// slot [bit]
+`define CCHIP_FROM_SLOTS_W(slots) \
+  ((slots) * (3 + `CCHIP_RM_ID_W + `CCHIP_PAIR_COUNT_W + `CCHIP_KIND_W))
 // the module that tests primitives of a and of b vertices, a <= b: 3 3, 3 4 or 4 4 [ModuleId]
 `define CCHIP_RM_OF(a, b) ((a) + (b) - 5)
 // vertices of A of that module, m = 1..3 [vertex]

@@ -26,17 +26,15 @@
 //   latency      5 clocks from s_valid to arvalid, 3 from a beat to m_valid
 //   throughput   a beat and an address on every clock; an answer without data takes a clock of the
 //                read channel, at most every other one
-//   bursts       one line each, INCR, aligned, so never across 4 KiB
+//   bursts       one line each, aligned, so never across 4 KiB; the top says arsize (whole beats),
+//                arburst (INCR), arcache and arprot
 //   cuts         every path: each output is a flip-flop
 //   reset        must reset the bus too: after it no beat of an earlier read may come; no request
 //                on the first clock after it
 module cchip_axi_read #(
     parameter integer CLIENTS = 3,      // clients; legal: 1..8
     parameter integer SLOTS = 16,  // lines that a client may be waiting for; legal: 2, 4, 8, 16, 32
-    parameter integer DATA_W = 128,     // width of the data bus (bit); legal: 64, 128, 256, 512
-    // ARCACHE: 3 normal memory, 15 a coherent port; legal: 0..15
-    parameter integer AXI_ARCACHE = 3,
-    parameter integer AXI_PROT = 0      // AxPROT: 0 secure, 2 non-secure; legal: 0..7
+    parameter integer DATA_W = 128      // width of the data bus (bit); legal: 64, 128, 256, 512
 ) (
     // ---- clock and reset
     input  wire                                      clk,              // clock, rising edge
@@ -70,11 +68,6 @@ module cchip_axi_read #(
     output wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] m_axi_arid,        // {client, slot}
     output wire [                              63:0] m_axi_araddr,  // address, byte, multiple of 64
     output wire [                               7:0] m_axi_arlen,  // constant: beats of a line - 1
-    // constant: all bytes of the bus
-    output wire [                               2:0] m_axi_arsize,
-    output wire [                               1:0] m_axi_arburst,    // constant: INCR
-    output wire [                               3:0] m_axi_arcache,  // constant: normal, not cached
-    output wire [                               2:0] m_axi_arprot,     // constant 0
     // ---- AXI4 read data
     input  wire                                      m_axi_rvalid,     // beat
     // 0 in reset and for one clock of each answer without data
@@ -115,11 +108,9 @@ module cchip_axi_read #(
   reg failing_q;  // an answer without data is on its way to the read channel's stage
   wire found;  // an expired read, found_id
   cchip_axi_read_address #(
-      .CLIENTS    (CLIENTS),
-      .SLOTS      (SLOTS),
-      .DATA_W     (DATA_W),
-      .AXI_ARCACHE(AXI_ARCACHE),
-      .AXI_PROT   (AXI_PROT)
+      .CLIENTS(CLIENTS),
+      .SLOTS  (SLOTS),
+      .DATA_W (DATA_W)
   ) u_address (
       .clk          (clk),
       .rst          (rst),
@@ -140,11 +131,7 @@ module cchip_axi_read #(
       .m_axi_arready(m_axi_arready),
       .m_axi_arid   (m_axi_arid),
       .m_axi_araddr (m_axi_araddr),
-      .m_axi_arlen  (m_axi_arlen),
-      .m_axi_arsize (m_axi_arsize),
-      .m_axi_arburst(m_axi_arburst),
-      .m_axi_arcache(m_axi_arcache),
-      .m_axi_arprot (m_axi_arprot)
+      .m_axi_arlen  (m_axi_arlen)
   );
 
   // ---- time: one expired read after the other takes the read channel's stage for a clock

@@ -26,10 +26,7 @@
 module cchip_axi_read_address #(
     parameter integer CLIENTS = 3,      // clients; legal: 1..8
     parameter integer SLOTS = 16,  // lines that a client may be waiting for; legal: 2, 4, 8, 16, 32
-    parameter integer DATA_W = 128,     // width of the data bus (bit); legal: 64, 128, 256, 512
-    // ARCACHE: 3 normal memory, 15 a coherent port; legal: 0..15
-    parameter integer AXI_ARCACHE = 3,
-    parameter integer AXI_PROT = 0      // AxPROT: 0 secure, 2 non-secure; legal: 0..7
+    parameter integer DATA_W = 128      // width of the data bus (bit); legal: 64, 128, 256, 512
 ) (
     input  wire                                      clk,            // clock, rising edge
     input  wire                                      rst,  // synchronous reset, active high
@@ -56,22 +53,13 @@ module cchip_axi_read_address #(
     input  wire                                      m_axi_arready,  // AXI4
     output wire [$clog2(CLIENTS)+$clog2(SLOTS)-1:0] m_axi_arid,      // AXI4: {client, slot}
     output wire [                              63:0] m_axi_araddr,   // AXI4: a multiple of 64
-    output wire [                               7:0] m_axi_arlen,    // AXI4: beats of a line - 1
-    output wire [                               2:0] m_axi_arsize,   // AXI4: DATA_W
-    output wire [                               1:0] m_axi_arburst,  // AXI4: INCR
-    output wire [                               3:0] m_axi_arcache,  // AXI4: 4'b0011
-    output wire [                               2:0] m_axi_arprot    // AXI4: 0
+    output wire [                               7:0] m_axi_arlen     // AXI4: beats of a line - 1
 );
 
-  localparam [31:0] CACHE = AXI_ARCACHE;
-  localparam [31:0] PROT = AXI_PROT;
-  `CCHIP_REFUSE(AXI_ARCACHE < 0 || AXI_ARCACHE > 15, cchip_error_AXI_ARCACHE_must_be_0_to_15)
-  `CCHIP_REFUSE(AXI_PROT < 0 || AXI_PROT > 7, cchip_error_AXI_PROT_must_be_0_to_7)
 
   localparam integer SLOT_W = $clog2(SLOTS);
   localparam integer ID_W = $clog2(CLIENTS) + SLOT_W;
   localparam [31:0] LAST_BEAT = 512 / DATA_W - 1;
-  localparam [31:0] BYTES_LOG2 = $clog2(DATA_W / 8);
 
   // ---- a queue per client, then one stream of {ID, line}
   wire [CLIENTS-1:0] waiting, granted, queue_ready;
@@ -160,10 +148,6 @@ module cchip_axi_read_address #(
   assign m_axi_arid    = arid_q;
   assign m_axi_araddr  = {line_q, 6'd0};
   assign m_axi_arlen   = LAST_BEAT[7:0];
-  assign m_axi_arsize  = BYTES_LOG2[2:0];
-  assign m_axi_arburst = 2'b01;
-  assign m_axi_arcache = CACHE[3:0];
-  assign m_axi_arprot  = PROT[2:0];
 
   wire unused = &{1'b0, queue_ready};
 

@@ -24,6 +24,7 @@
 //   order        one ID, so responses come in the order of addresses, and data go in that order.
 //                Addresses and data of a write are offered only when all its beats are here: no
 //                client can stall the bus
+//   attributes   the top says awsize (whole beats), awburst (INCR), awcache and awprot
 //   latency      5 clocks from s_valid to awvalid, 7 to wvalid, 2 from a response to m_valid
 //   throughput   a beat in 2 clocks, an address on every clock
 //   cuts         every path: each output is a flip-flop
@@ -32,10 +33,7 @@ module cchip_axi_write #(
     parameter integer CLIENTS = 2,       // clients; legal: 1..4
     parameter integer DATA_W = 128,      // width of the data bus (bit); legal: 64, 128, 256, 512
     parameter integer OUTSTANDING = 16,  // writes that memory may have to answer; legal: 1..64
-    parameter integer ID_W = 1,          // width of the ID, which is always 0 (bit); legal: 1..16
-    // AWCACHE: 2 normal memory, 15 a coherent port; legal: 0..15
-    parameter integer AXI_AWCACHE = 2,
-    parameter integer AXI_PROT = 0       // AxPROT: 0 secure, 2 non-secure; legal: 0..7
+    parameter integer ID_W = 1           // width of the ID, which is always 0 (bit); legal: 1..16
 ) (
     // ---- clock and reset
     input  wire                                       clk,              // clock, rising edge
@@ -67,12 +65,6 @@ module cchip_axi_write #(
     // address, byte, multiple of a beat
     output wire [                               63:0] m_axi_awaddr,
     output wire [                                7:0] m_axi_awlen,      // beats - 1
-    // constant: all bytes of the bus
-    output wire [                                2:0] m_axi_awsize,
-    output wire [                                1:0] m_axi_awburst,    // constant: INCR
-    // constant: normal, neither cached nor buffered
-    output wire [                                3:0] m_axi_awcache,
-    output wire [                                2:0] m_axi_awprot,     // constant 0
     // ---- AXI4 write data
     output wire                                       m_axi_wvalid,     // AXI4 write data
     input  wire                                       m_axi_wready,     // beat taken
@@ -88,16 +80,10 @@ module cchip_axi_write #(
     input  wire [                                1:0] m_axi_bresp
 );
 
-  localparam [31:0] CACHE = AXI_AWCACHE;
-  localparam [31:0] PROT = AXI_PROT;
-  `CCHIP_REFUSE(AXI_AWCACHE < 0 || AXI_AWCACHE > 15, cchip_error_AXI_AWCACHE_must_be_0_to_15)
-  `CCHIP_REFUSE(AXI_PROT < 0 || AXI_PROT > 7, cchip_error_AXI_PROT_must_be_0_to_7)
 
   localparam integer STRB_W = DATA_W / 8;
-  localparam integer BYTES_LOG2 = $clog2(STRB_W);
-  localparam integer ADDRESS_W = 64 - BYTES_LOG2;
+  localparam integer ADDRESS_W = 64 - $clog2(STRB_W);
   localparam integer COUNT_W = OUTSTANDING < 1 ? 1 : $clog2(OUTSTANDING + 1);
-  localparam [31:0] SIZE = BYTES_LOG2;
 
   `CCHIP_REFUSE(CLIENTS < 1 || CLIENTS > 4, cchip_error_axi_write_CLIENTS_must_be_1_to_4)
   `CCHIP_REFUSE(DATA_W < 64 || DATA_W > 512 || (1 << $clog2(DATA_W)) != DATA_W,
@@ -192,11 +178,6 @@ module cchip_axi_write #(
       .m_axi_wlast    (m_axi_wlast)
   );
   assign m_axi_awid    = {ID_W{1'b0}};
-  assign m_axi_awsize  = SIZE[2:0];
-  assign m_axi_awburst = 2'b01;
-  // not bufferable: the response comes from where the data are seen by all
-  assign m_axi_awcache = CACHE[3:0];
-  assign m_axi_awprot  = PROT[2:0];
 
   // ---- responses. One counts only if there is a write whose address and data were taken
   reg aw_taken_q, w_taken_q;

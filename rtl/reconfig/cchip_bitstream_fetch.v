@@ -9,7 +9,7 @@
 //   latency      m_valid 5 clocks after run plus the memory's, counted from arvalid = 1, arready =
 //                1 to rvalid = 1
 //   throughput   one word per clock if a read takes less than 13 clocks
-//   bursts       INCR, up to 16 beats, within 64 bytes (never across 4 KiB); two outstanding; only
+//   bursts       up to 16 beats, within 64 bytes (never across 4 KiB); two outstanding; only
 //                what the FIFO has room for
 //   cuts         every path but m_ready to the FIFO's: each output is a flip-flop; m_axi_rready is
 //                always 1
@@ -22,10 +22,7 @@
 //                after the change, a higher one, or 0, gives more time
 //   reset        must reset the bus too: after it no beat of an earlier read may come
 module cchip_bitstream_fetch #(
-    parameter integer FIFO_DEPTH = 32,  // capacity of the FIFO (word); legal: >= 32
-    // ARCACHE: 3 normal memory, 15 a coherent port; legal: 0..15
-    parameter integer AXI_ARCACHE = 3,
-    parameter integer AXI_PROT = 0      // AxPROT: 0 secure, 2 non-secure; legal: 0..7
+    parameter integer FIFO_DEPTH = 32   // capacity of the FIFO (word); legal: >= 32
 ) (
     input  wire        clk,            // clock, rising edge
     input  wire        rst,            // synchronous reset, active high
@@ -43,10 +40,6 @@ module cchip_bitstream_fetch #(
     input  wire        m_axi_arready,  // address taken
     output wire [31:0] m_axi_araddr,   // address, byte
     output wire [ 7:0] m_axi_arlen,    // beats - 1, up to 15
-    output wire [ 2:0] m_axi_arsize,   // constant: 4 bytes
-    output wire [ 1:0] m_axi_arburst,  // constant: INCR
-    output wire [ 3:0] m_axi_arcache,  // constant: normal, not cached
-    output wire [ 2:0] m_axi_arprot,   // constant 0
     input  wire        m_axi_rvalid,   // beat
     output wire        m_axi_rready,   // 1 except in reset
     input  wire [31:0] m_axi_rdata,    // data
@@ -54,10 +47,6 @@ module cchip_bitstream_fetch #(
     input  wire        m_axi_rlast     // last beat of a burst
 );
 
-  localparam [31:0] CACHE = AXI_ARCACHE;
-  localparam [31:0] PROT = AXI_PROT;
-  `CCHIP_REFUSE(AXI_ARCACHE < 0 || AXI_ARCACHE > 15, cchip_error_AXI_ARCACHE_must_be_0_to_15)
-  `CCHIP_REFUSE(AXI_PROT < 0 || AXI_PROT > 7, cchip_error_AXI_PROT_must_be_0_to_7)
 
   localparam integer COUNT_W = $clog2(FIFO_DEPTH + 1);
   localparam [31:0] ROOM = FIFO_DEPTH - 16;
@@ -116,10 +105,6 @@ module cchip_bitstream_fetch #(
   assign m_axi_arvalid = arvalid_q;
   assign m_axi_araddr  = addr_q;
   assign m_axi_arlen   = {3'd0, beats_q} - 8'd1;
-  assign m_axi_arsize  = 3'b010;
-  assign m_axi_arburst = 2'b01;
-  assign m_axi_arcache = CACHE[3:0];
-  assign m_axi_arprot  = PROT[2:0];
 
   // ---- beats: RLAST ends a burst, the count only checks it
   reg rready_q;

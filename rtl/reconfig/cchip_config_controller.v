@@ -32,10 +32,7 @@ module cchip_config_controller #(
     parameter integer CFG_DIVIDER = 2,
     // longest wait for a slot to decouple, to end its reset on configuration, to recouple (clock);
     // legal: >= 16
-    parameter integer SLOT_LIMIT = 4096,
-    // ARCACHE: 3 normal memory, 15 a coherent port; legal: 0..15
-    parameter integer AXI_ARCACHE = 3,
-    parameter integer AXI_PROT = 0        // AxPROT: 0 secure, 2 non-secure; legal: 0..7
+    parameter integer SLOT_LIMIT = 4096
 ) (
     input  wire                                 clk,             // clock, rising edge
     input  wire                                 rst,             // synchronous reset, active high
@@ -78,10 +75,6 @@ module cchip_config_controller #(
     input  wire                                 m_axi_arready,   // address taken
     output wire [                         31:0] m_axi_araddr,    // address, byte
     output wire [                          7:0] m_axi_arlen,     // beats - 1, up to 15
-    output wire [                          2:0] m_axi_arsize,    // constant: 4 bytes
-    output wire [                          1:0] m_axi_arburst,   // constant: INCR
-    output wire [                          3:0] m_axi_arcache,   // constant: normal, not cached
-    output wire [                          2:0] m_axi_arprot,    // constant 0
     input  wire                                 m_axi_rvalid,    // beat
     output wire                                 m_axi_rready,    // 1 except in reset
     input  wire [                         31:0] m_axi_rdata,     // data
@@ -173,7 +166,7 @@ module cchip_config_controller #(
     fetch_words_q   <= in_header ? 30'd4 : length[31:2] + {29'd0, length[1:0] != 2'd0};
   end
 
-  cchip_bitstream_fetch #(.AXI_ARCACHE(AXI_ARCACHE), .AXI_PROT(AXI_PROT)) u_fetch (
+  cchip_bitstream_fetch u_fetch (
       .clk          (clk),
       .rst          (rst),
       .run          (run),
@@ -190,10 +183,6 @@ module cchip_config_controller #(
       .m_axi_arready(m_axi_arready),
       .m_axi_araddr (m_axi_araddr),
       .m_axi_arlen  (m_axi_arlen),
-      .m_axi_arsize (m_axi_arsize),
-      .m_axi_arburst(m_axi_arburst),
-      .m_axi_arcache(m_axi_arcache),
-      .m_axi_arprot (m_axi_arprot),
       .m_axi_rvalid (m_axi_rvalid),
       .m_axi_rready (m_axi_rready),
       .m_axi_rdata  (m_axi_rdata),

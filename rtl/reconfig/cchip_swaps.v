@@ -24,10 +24,7 @@ module cchip_swaps #(
     parameter integer SWAPS = 1,        // 0: there are none, every output is 0; legal: 0, 1
     parameter integer COUNT_W = 8,      // width of the number of waiting pairs (bit); legal: 1..16
     parameter integer CFG_W = 8,        // width of the configuration port (bit); legal: 8, 32
-    parameter integer CFG_DIVIDER = 2,  // clocks per word of the port; legal: from 1 on
-    // ARCACHE: 3 normal memory, 15 a coherent port; legal: 0..15
-    parameter integer AXI_ARCACHE = 3,
-    parameter integer AXI_PROT = 0      // AxPROT: 0 secure, 2 non-secure; legal: 0..7
+    parameter integer CFG_DIVIDER = 2   // clocks per word of the port; legal: from 1 on
 ) (
     input  wire                                 clk,             // clock, rising edge
     input  wire                                 rst,             // synchronous reset, active high
@@ -37,18 +34,8 @@ module cchip_swaps #(
     // bit k - 1: no slot can get the module of kind k
     output wire [                    KINDS-1:0] no_provider,
     // ---- slots
-    input  wire [       `CCHIP_KIND_W*SLOTS-1:0] slot_module,  // module that a slot shows, 0: none
-    output wire [                    SLOTS-1:0] stop,            // the slot gets no further pairs
-    output wire [                    SLOTS-1:0] decouple,  // the slot is cut off from the rest
-    output wire [                    SLOTS-1:0] hold_reset,      // the slot is held in reset
-    // its reset on configuration begins, one clock
-    output wire [                    SLOTS-1:0] roc_start,
-    input  wire [                    SLOTS-1:0] quiet,  // it has no pairs and will get none
-    // it is cut off and all its pairs are answered
-    input  wire [                    SLOTS-1:0] decoupled,
-    input  wire [                    SLOTS-1:0] roc_busy,        // its reset on configuration lasts
-    input  wire [     `CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id,    // module in the partition
-    input  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] slot_lost,  // pairs that it gave up in this swap
+    output wire [`CCHIP_TO_SLOTS_W(SLOTS)-1:0] to_slots,  // see cchip_slots
+    input  wire [`CCHIP_FROM_SLOTS_W(SLOTS)-1:0] from_slots,  // see cchip_slots
     // ---- registers
     output wire [         4*`CCHIP_PHASE_W-1:0] phase,  // of each of four slots: phase of its swap
     input  wire                                 clear,  // 1: lost and clocks of phases become 0
@@ -94,10 +81,6 @@ module cchip_swaps #(
     input  wire                                 m_axi_arready,   // AXI4 read, address
     output wire [                         31:0] m_axi_araddr,    // AXI4 read, address, byte
     output wire [                          7:0] m_axi_arlen,     // AXI4 read, beats - 1, at most 15
-    output wire [                          2:0] m_axi_arsize,    // AXI4 read, 2: 4 bytes per beat
-    output wire [                          1:0] m_axi_arburst,   // AXI4 read, 1: INCR
-    output wire [                          3:0] m_axi_arcache,   // AXI4 read, constant
-    output wire [                          2:0] m_axi_arprot,    // AXI4 read, constant
     input  wire                                 m_axi_rvalid,    // AXI4 read, data
     output wire                                 m_axi_rready,    // AXI4 read, data
     input  wire [                         31:0] m_axi_rdata,     // AXI4 read, data
@@ -121,10 +104,7 @@ module cchip_swaps #(
     end
     if (SWAPS == 0) begin : gen_swaps
       assign no_provider  = {KINDS{1'b0}};
-      assign stop         = {SLOTS{1'b0}};
-      assign decouple     = {SLOTS{1'b0}};
-      assign hold_reset   = {SLOTS{1'b0}};
-      assign roc_start    = {SLOTS{1'b0}};
+      assign to_slots     = {`CCHIP_TO_SLOTS_W(SLOTS){1'b0}};
       assign phase        = {4 * PHASE_W{1'b0}};
       assign last_report  = {`CCHIP_SWAP_REPORT_W{1'b0}};
       assign swap_events  = 3'd0;
@@ -135,19 +115,21 @@ module cchip_swaps #(
       assign m_axi_arvalid = 1'b0;
       assign m_axi_araddr  = 32'd0;
       assign m_axi_arlen   = 8'd0;
-      assign m_axi_arsize  = 3'd0;
-      assign m_axi_arburst = 2'd0;
-      assign m_axi_arcache = 4'd0;
-      assign m_axi_arprot  = 3'd0;
       assign m_axi_rready  = 1'b0;
       assign cfg_valid     = 1'b0;
       assign cfg_data      = {CFG_W{1'b0}};
-      wire unused = &{1'b0, waiting, full, slot_module, quiet, decoupled, region_rm_id, roc_busy,
-          slot_lost, clear, abort_swap, enable, command_valid, command_slot, command_module,
+      wire unused = &{1'b0, waiting, full, from_slots, clear, abort_swap, enable, command_valid,
+          command_slot, command_module,
           command_force, shutdown_limit, memory_limit, min_batch, max_age, write_table, write_word,
           write_data, write_bytes, read_word, m_axi_arready, m_axi_rvalid, m_axi_rdata,
           m_axi_rresp, m_axi_rlast, cfg_error, clk, rst};
     end else begin : gen_swaps
+      wire [SLOTS-1:0] stop, decouple, hold_reset, roc_start, quiet, decoupled, roc_busy;
+      wire [`CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id;
+      wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] slot_lost;
+      wire [`CCHIP_KIND_W*SLOTS-1:0] slot_module;
+      assign to_slots = {stop, decouple, hold_reset, roc_start};
+      assign {quiet, decoupled, roc_busy, region_rm_id, slot_lost, slot_module} = from_slots;
       wire [(SLOTS<<`CCHIP_KIND_BITS(KINDS))-1:0] table_valid, invalidate, resting, hopeless;
       wire [4:0] table_entry;
       wire [31:0] table_address, table_size;
@@ -248,9 +230,7 @@ module cchip_swaps #(
       cchip_config_controller #(
           .SLOTS      (SLOTS),
           .CFG_W      (CFG_W),
-          .CFG_DIVIDER(CFG_DIVIDER),
-          .AXI_ARCACHE(AXI_ARCACHE),
-          .AXI_PROT   (AXI_PROT)
+          .CFG_DIVIDER(CFG_DIVIDER)
       ) u_controller (
           .clk           (clk),
           .rst           (rst),
@@ -279,10 +259,6 @@ module cchip_swaps #(
           .m_axi_arready (m_axi_arready),
           .m_axi_araddr  (m_axi_araddr),
           .m_axi_arlen   (m_axi_arlen),
-          .m_axi_arsize  (m_axi_arsize),
-          .m_axi_arburst (m_axi_arburst),
-          .m_axi_arcache (m_axi_arcache),
-          .m_axi_arprot  (m_axi_arprot),
           .m_axi_rvalid  (m_axi_rvalid),
           .m_axi_rready  (m_axi_rready),
           .m_axi_rdata   (m_axi_rdata),

@@ -86,6 +86,22 @@ module cchip_refit_axi #(
   localparam integer BEAT_W = 6 - $clog2(DATA_W / 8);  // of the number of a beat in its line
   localparam integer ADDRESS_W = 58 + BEAT_W;
 
+  // ---- what every address says: INCR bursts of whole beats. Writes are not bufferable by default:
+  // the response comes from where the data are seen by all
+  localparam [31:0] BEAT = $clog2(DATA_W / 8);
+  localparam [31:0] ARCACHE = AXI_ARCACHE;
+  localparam [31:0] AWCACHE = AXI_AWCACHE;
+  localparam [31:0] PROT = AXI_PROT;
+  `CCHIP_REFUSE(AXI_ARCACHE < 0 || AXI_ARCACHE > 15, cchip_error_AXI_ARCACHE_must_be_0_to_15)
+  `CCHIP_REFUSE(AXI_AWCACHE < 0 || AXI_AWCACHE > 15, cchip_error_AXI_AWCACHE_must_be_0_to_15)
+  `CCHIP_REFUSE(AXI_PROT < 0 || AXI_PROT > 7, cchip_error_AXI_PROT_must_be_0_to_7)
+  assign m_axi_arsize  = BEAT[2:0];
+  assign m_axi_arburst = 2'b01;
+  assign m_axi_arcache = ARCACHE[3:0];
+  assign m_axi_arprot  = PROT[2:0];
+  assign {m_axi_awsize, m_axi_awburst, m_axi_awprot} = {m_axi_arsize, m_axi_arburst, m_axi_arprot};
+  assign m_axi_awcache = AWCACHE[3:0];
+
   reg [31:0] refit_limit_q;
   always @(posedge clk)
     refit_limit_q <= limit == 32'd0 ? 32'd0 :
@@ -136,11 +152,9 @@ module cchip_refit_axi #(
   wire [2:0] beat;
   wire [1:0] slots_outstanding;
   cchip_axi_read #(
-      .CLIENTS    (1),
-      .SLOTS      (2),
-      .DATA_W     (DATA_W),
-      .AXI_ARCACHE(AXI_ARCACHE),
-      .AXI_PROT   (AXI_PROT)
+      .CLIENTS(1),
+      .SLOTS  (2),
+      .DATA_W (DATA_W)
   ) u_read (
       .clk            (clk),
       .rst            (rst),
@@ -161,10 +175,6 @@ module cchip_refit_axi #(
       .m_axi_arid     (m_axi_arid),
       .m_axi_araddr   (m_axi_araddr),
       .m_axi_arlen    (m_axi_arlen),
-      .m_axi_arsize   (m_axi_arsize),
-      .m_axi_arburst  (m_axi_arburst),
-      .m_axi_arcache  (m_axi_arcache),
-      .m_axi_arprot   (m_axi_arprot),
       .m_axi_rvalid   (m_axi_rvalid),
       .m_axi_rready   (m_axi_rready),
       .m_axi_rid      (m_axi_rid),
@@ -179,9 +189,7 @@ module cchip_refit_axi #(
       .CLIENTS    (1),
       .DATA_W     (DATA_W),
       .OUTSTANDING(1),
-      .ID_W       (1),
-      .AXI_AWCACHE(AXI_AWCACHE),
-      .AXI_PROT   (AXI_PROT)
+      .ID_W       (1)
   ) u_write (
       .clk            (clk),
       .rst            (rst),
@@ -200,10 +208,6 @@ module cchip_refit_axi #(
       .m_axi_awid     (m_axi_awid),
       .m_axi_awaddr   (m_axi_awaddr),
       .m_axi_awlen    (m_axi_awlen),
-      .m_axi_awsize   (m_axi_awsize),
-      .m_axi_awburst  (m_axi_awburst),
-      .m_axi_awcache  (m_axi_awcache),
-      .m_axi_awprot   (m_axi_awprot),
       .m_axi_wvalid   (m_axi_wvalid),
       .m_axi_wready   (m_axi_wready),
       .m_axi_wdata    (m_axi_wdata),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH SHL-2.1
 `default_nettype none
 `include "cchip_defs.vh"
+`include "cchip_assert.vh"
 // cchip_primtest_subsystem: primitive tests of three or four kinds in 1 to 4 slots that are
 // exchanged at run time. Pairs of any kind in, answers out, the exchange of modules done by itself
 // or by software.
@@ -141,6 +142,16 @@ module cchip_primtest_subsystem #(
   localparam [31:0] PORT_W = CFG_W;
   localparam [31:0] GRID_W = COORD_W;
   localparam [31:0] DEPTH = QUEUE_DEPTH;
+
+  // ---- what every address says: INCR bursts of whole beats
+  localparam [31:0] ARCACHE = AXI_ARCACHE;
+  localparam [31:0] PROT = AXI_PROT;
+  `CCHIP_REFUSE(AXI_ARCACHE < 0 || AXI_ARCACHE > 15, cchip_error_AXI_ARCACHE_must_be_0_to_15)
+  `CCHIP_REFUSE(AXI_PROT < 0 || AXI_PROT > 7, cchip_error_AXI_PROT_must_be_0_to_7)
+  assign m_axi_arsize  = 3'b010;
+  assign m_axi_arburst = 2'b01;
+  assign m_axi_arcache = ARCACHE[3:0];
+  assign m_axi_arprot  = PROT[2:0];
 
   // ---- pairs that wait: descriptors in queues, vertices in the operand memory
   wire [KINDS:0] some, queue_room, kind;
@@ -314,11 +325,9 @@ module cchip_primtest_subsystem #(
   always @(posedge clk) irq_q <= ~rst & ~status_write & |(status & status_enable);
 
   // ---- slots and swaps
-  wire [SLOTS-1:0] stop, decouple, hold_reset, roc_start, quiet, roc_busy;
+  wire [`CCHIP_TO_SLOTS_W(SLOTS)-1:0] to_slots;
+  wire [`CCHIP_FROM_SLOTS_W(SLOTS)-1:0] from_slots;
   wire [KINDS-1:0] no_provider;  // of the kinds from 1 on
-  wire [`CCHIP_KIND_W*SLOTS-1:0] slot_module;
-  wire [`CCHIP_RM_ID_W*SLOTS-1:0] region_rm_id;
-  wire [`CCHIP_PAIR_COUNT_W*SLOTS-1:0] slot_lost;
   cchip_slots #(
       .COORD_W            (COORD_W),
       .SUBSTAGES          (SUBSTAGES),
@@ -361,15 +370,8 @@ module cchip_primtest_subsystem #(
       .rm_id           (rm_id),
       .decoupled       (decoupled),
       .no_provider     (no_provider),
-      .slot_module     (slot_module),
-      .stop            (stop),
-      .decouple        (decouple),
-      .hold_reset      (hold_reset),
-      .roc_start       (roc_start),
-      .quiet           (quiet),
-      .roc_busy        (roc_busy),
-      .region_rm_id    (region_rm_id),
-      .slot_lost       (slot_lost),
+      .to_slots        (to_slots),
+      .from_slots      (from_slots),
       .cfg_valid       (cfg_valid),
       .cfg_data        (cfg_data)
   );
@@ -379,25 +381,15 @@ module cchip_primtest_subsystem #(
       .SLOTS      (SLOTS),
       .COUNT_W    (COUNT_W),
       .CFG_W      (CFG_W),
-      .CFG_DIVIDER(CFG_DIVIDER),
-      .AXI_ARCACHE(AXI_ARCACHE),
-      .AXI_PROT   (AXI_PROT)
+      .CFG_DIVIDER(CFG_DIVIDER)
   ) u_swaps (
       .clk           (clk),
       .rst           (rst),
       .waiting       (waiting[COUNT_W+:KINDS*COUNT_W]),
       .full          (~queue_room[KINDS:1]),
       .no_provider   (no_provider),
-      .slot_module   (slot_module),
-      .stop          (stop),
-      .decouple      (decouple),
-      .hold_reset    (hold_reset),
-      .roc_start     (roc_start),
-      .quiet         (quiet),
-      .decoupled     (decoupled[SLOTS-1:0]),
-      .roc_busy      (roc_busy),
-      .region_rm_id  (region_rm_id),
-      .slot_lost     (slot_lost),
+      .to_slots      (to_slots),
+      .from_slots    (from_slots),
       .phase         (phase),
       .clear         (clear),
       .abort_swap    (abort_swap),
@@ -427,10 +419,6 @@ module cchip_primtest_subsystem #(
       .m_axi_arready (m_axi_arready),
       .m_axi_araddr  (m_axi_araddr),
       .m_axi_arlen   (m_axi_arlen),
-      .m_axi_arsize  (m_axi_arsize),
-      .m_axi_arburst (m_axi_arburst),
-      .m_axi_arcache (m_axi_arcache),
-      .m_axi_arprot  (m_axi_arprot),
       .m_axi_rvalid  (m_axi_rvalid),
       .m_axi_rready  (m_axi_rready),
       .m_axi_rdata   (m_axi_rdata),

@@ -198,6 +198,11 @@ module cchip_broad_phase_axi #(
       .s_read_outstanding(outstanding)
   );
 
+  localparam [31:0] BEAT = $clog2(DATA_W / 8);
+  assign m_axi_arsize  = BEAT[2:0];
+  assign m_axi_arburst = 2'b01;
+  assign m_axi_arcache = 4'd3;
+  assign m_axi_arprot  = 3'd0;
   cchip_axi_read #(
       .CLIENTS(1),
       .SLOTS  (MISSES),
@@ -222,10 +227,6 @@ module cchip_broad_phase_axi #(
       .m_axi_arid   (m_axi_arid),
       .m_axi_araddr (m_axi_araddr),
       .m_axi_arlen  (m_axi_arlen),
-      .m_axi_arsize (m_axi_arsize),
-      .m_axi_arburst(m_axi_arburst),
-      .m_axi_arcache(m_axi_arcache),
-      .m_axi_arprot (m_axi_arprot),
       .m_axi_rvalid (m_axi_rvalid),
       .m_axi_rready (m_axi_rready),
       .m_axi_rid    (m_axi_rid),

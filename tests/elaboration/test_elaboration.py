@@ -211,9 +211,9 @@ ILLEGAL = [
     ("cchip_crc32", {"DATA_W": 12}, CRC),
     ("cchip_bitstream_fetch", {"FIFO_DEPTH": 31}, FETCH),
     *((module, {name: n}, f"cchip_error_{name}_must_be_0_to_{most}") for module, name, most in
-      (("cchip_axi_read", "AXI_ARCACHE", 15), ("cchip_axi_read", "AXI_PROT", 7), ("cchip_axi_write", "AXI_AWCACHE", 15),
-       ("cchip_axi_write", "AXI_PROT", 7), ("cchip_bitstream_fetch", "AXI_ARCACHE", 15),
-       ("cchip_bitstream_fetch", "AXI_PROT", 7))
+      ((top, name, most) for top in ("cchip_chip", "cchip_refit_axi", "cchip_primtest_subsystem")
+       for name, most in (("AXI_ARCACHE", 15), ("AXI_AWCACHE", 15), ("AXI_PROT", 7))
+       if (top, name) != ("cchip_primtest_subsystem", "AXI_AWCACHE"))
       for n in (-1, most + 1)),
     *(("cchip_cache", {"CACHE_KB": n}, CACHE + "CACHE_KB_must_be_a_power_of_two_1_to_1024") for n in (0, 3, 2048)),
     *(("cchip_cache", {"PLACES": n}, CACHE + "PLACES_must_be_a_power_of_two_2_to_64") for n in (1, 12, 128)),
@@ -307,7 +307,7 @@ LEGAL = [
     *(("cchip_arbiter", {"N": n}) for n in (1, 32)),
     ("cchip_cache", {"CACHE_KB": 1, "PLACES": 2, "MISSES": 2, "LINE_W": 4, "LOCKS": 1, "DATA_W": 512}),
     *(("cchip_cache_fill", {"MISSES": n, "FRAME_W": 1, "DATA_W": w}) for n, w in ((2, 64), (32, 256))),
-    *((module, {"AXI_ARCACHE": 15, "AXI_PROT": n}) for module in ("cchip_axi_read", "cchip_bitstream_fetch")
+    *((module, {"AXI_ARCACHE": 15, "AXI_PROT": n}) for module in ("cchip_refit_axi", "cchip_primtest_subsystem")
       for n in (2, 7)),
     *(("cchip_axi_read", {"CLIENTS": c, "SLOTS": s, "DATA_W": w}) for c, s, w in ((1, 2, 512), (8, 32, 64))),
     *(("cchip_axi_write", {"CLIENTS": c, "DATA_W": w, "OUTSTANDING": o, "ID_W": i})

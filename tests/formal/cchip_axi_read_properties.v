@@ -32,6 +32,7 @@ module cchip_axi_read_properties #(
   (* anyseq *) wire [1:0] any_limit;
   wire [31:0] limit = any_limit;
   localparam [2:0] LAST_BEAT = 512 / DATA_W - 1;
+  localparam [2:0] BEAT = $clog2(DATA_W / 8);
 
   wire [CLIENTS-1:0] m_valid;
   wire [SLOT_W-1:0] m_slot;
@@ -43,9 +44,6 @@ module cchip_axi_read_properties #(
   wire [ID_W-1:0] m_axi_arid;
   wire [63:0] m_axi_araddr;
   wire [7:0] m_axi_arlen;
-  wire [2:0] m_axi_arsize, m_axi_arprot;
-  wire [1:0] m_axi_arburst;
-  wire [3:0] m_axi_arcache;
   cchip_axi_read #(
       .CLIENTS(CLIENTS),
       .SLOTS  (SLOTS),
@@ -70,10 +68,6 @@ module cchip_axi_read_properties #(
       .m_axi_arid   (m_axi_arid),
       .m_axi_araddr (m_axi_araddr),
       .m_axi_arlen  (m_axi_arlen),
-      .m_axi_arsize (m_axi_arsize),
-      .m_axi_arburst(m_axi_arburst),
-      .m_axi_arcache(m_axi_arcache),
-      .m_axi_arprot (m_axi_arprot),
       .m_axi_rvalid (m_axi_rvalid),
       .m_axi_rready (m_axi_rready),
       .m_axi_rid    (m_axi_rid),
@@ -98,10 +92,10 @@ module cchip_axi_read_properties #(
       .m_axi_arid   (m_axi_arid),
       .m_axi_araddr (m_axi_araddr),
       .m_axi_arlen  (m_axi_arlen),
-      .m_axi_arsize (m_axi_arsize),
-      .m_axi_arburst(m_axi_arburst),
-      .m_axi_arcache(m_axi_arcache),
-      .m_axi_arprot (m_axi_arprot),
+      .m_axi_arsize (BEAT),
+      .m_axi_arburst(2'b01),
+      .m_axi_arcache(4'd0),
+      .m_axi_arprot (3'd0),
       .m_axi_rvalid (m_axi_rvalid),
       .m_axi_rready (m_axi_rready),
       .m_axi_rid    (m_axi_rid),
@@ -208,7 +202,7 @@ module cchip_axi_read_properties #(
       stable: assert (!asked_q || (m_axi_arvalid && line_out == line_out_q && m_axi_arid == arid_q));
       fresh: assert (!(m_axi_arvalid && m_axi_arid == id && owed_q));
       its_line: assert (!(m_axi_arvalid && m_axi_arid == id && open_q[id]) || line_out == line_q || asked_q);
-      kind: assert (m_axi_arlen == LAST_BEAT && m_axi_arsize == $clog2(DATA_W / 8) && m_axi_arburst == 2'b01 && m_axi_araddr[5:0] == 0);
+      kind: assert (m_axi_arlen == LAST_BEAT && m_axi_araddr[5:0] == 0);
       one_client: assert ((m_valid & (m_valid - 1)) == 0);
       waits: assert (!answer || open_q[id]);
       came: assert (!of_client || (came_q[2] && m_beat == number_q3 && m_beat == handed_q && data_out == data_q[2]));

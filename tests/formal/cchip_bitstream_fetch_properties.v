@@ -24,9 +24,6 @@ module cchip_bitstream_fetch_properties (
   wire m_valid, bus_error, timeout, outstanding, m_axi_arvalid, m_axi_rready;
   wire [31:0] m_data, m_axi_araddr;
   wire [7:0] m_axi_arlen;
-  wire [2:0] m_axi_arsize, m_axi_arprot;
-  wire [1:0] m_axi_arburst;
-  wire [3:0] m_axi_arcache;
   cchip_bitstream_fetch dut (
       .clk          (clk),
       .rst          (rst),
@@ -44,10 +41,6 @@ module cchip_bitstream_fetch_properties (
       .m_axi_arready(m_axi_arready),
       .m_axi_araddr (m_axi_araddr),
       .m_axi_arlen  (m_axi_arlen),
-      .m_axi_arsize (m_axi_arsize),
-      .m_axi_arburst(m_axi_arburst),
-      .m_axi_arcache(m_axi_arcache),
-      .m_axi_arprot (m_axi_arprot),
       .m_axi_rvalid (m_axi_rvalid),
       .m_axi_rready (m_axi_rready),
       .m_axi_rdata  (m_axi_rdata),
@@ -72,10 +65,10 @@ module cchip_bitstream_fetch_properties (
       .m_axi_arid   (1'b0),
       .m_axi_araddr (m_axi_araddr),
       .m_axi_arlen  (m_axi_arlen),
-      .m_axi_arsize (m_axi_arsize),
-      .m_axi_arburst(m_axi_arburst),
-      .m_axi_arcache(m_axi_arcache),
-      .m_axi_arprot (m_axi_arprot),
+      .m_axi_arsize (3'b010),
+      .m_axi_arburst(2'b01),
+      .m_axi_arcache(4'd0),
+      .m_axi_arprot (3'd0),
       .m_axi_rvalid (m_axi_rvalid),
       .m_axi_rready (m_axi_rready),
       .m_axi_rid    (1'b0),
@@ -128,7 +121,7 @@ module cchip_bitstream_fetch_properties (
     if (started_q && !rst_q) begin
       stable: assert (!asked_q || (m_axi_arvalid && m_axi_araddr == araddr_q && m_axi_arlen == arlen_q));
       within_64: assert (!m_axi_arvalid || {4'd0, m_axi_araddr[5:2]} + m_axi_arlen <= 8'd15);
-      kind: assert (m_axi_arsize == 3'b010 && m_axi_arburst == 2'b01 && m_axi_araddr[1:0] == 2'b00 || !m_axi_arvalid);
+      kind: assert (m_axi_araddr[1:0] == 2'b00 || !m_axi_arvalid);
       two: assert (bursts_q != 2'd3 && !(bursts_q == 2'd2 && m_axi_arvalid));
 `ifdef ROOM
       room: assert (asked_for <= 7'd32);

@@ -233,11 +233,9 @@ MUTANTS = [
     ("cchip_axi_read bounded", READ, "wire last = rlast_q2 || count == LAST_BEAT[2:0];", "wire last = rlast_q2;"),
     ("cchip_axi_read bounded", READ_ADDRESS, "issue | (arvalid_q & ~m_axi_arready);",
      "issue | (arvalid_q & ~m_axi_arready & ar_live_q);"),
-    # rules of the bus: an address that follows ready; a reset that leaves an address on offer; an attribute that
-    # follows ready
+    # rules of the bus: an address that follows ready; a reset that leaves an address on offer
     ("cchip_axi_read bounded", READ_ADDRESS, "{line_q, 6'd0};", "{line_q[57:1], line_q[0] & m_axi_arready, 6'd0};"),
     ("cchip_bitstream_fetch bounded", FETCH, "arvalid_q  <= 1'b0;", "arvalid_q  <= arvalid_q;"),
-    ("cchip_axi_write bounded", WRITE, "m_axi_awcache = CACHE[3:0];", "m_axi_awcache = {CACHE[3:1], m_axi_awready};"),
     # a response that comes late answers the next write; one that comes before the data is taken for theirs; a burst
     # leaves its line; more writes than can be counted; data of another write end a burst; writes of two clients are
     # mixed; a refused write is answered at once

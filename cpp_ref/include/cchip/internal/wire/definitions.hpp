@@ -227,6 +227,10 @@ constexpr int info_w = 14;
 constexpr int point_w(int w) { return 3 * w; }
 /// s_pair_a, s_pair_b: vertex i at bit POINT_W i [bit]
 constexpr int primitive_w(int w) { return vertices * point_w(w); }
+/// what a swap asks of the slots: {stop, decouple, hold_reset, roc_start}, each a bit per slot [bit]
+constexpr int to_slots_w(int slots) { return slots * 4; }
+/// what the slots answer: {quiet, decoupled, roc_busy, region_rm_id, lost, module}, each a field per slot [bit]
+constexpr int from_slots_w(int slots) { return slots * (3 + rm_id_w + pair_count_w + kind_w); }
 /// the module that tests primitives of a and of b vertices, a <= b: 3 3, 3 4 or 4 4 [ModuleId]
 constexpr int rm_of(int a, int b) { return a + b - 5; }
 /// vertices of A of that module, m = 1..3 [vertex]

@@ -6,8 +6,20 @@
 
 #include <cstdint>
 #include <string>
+#include <type_traits>
+#include <utility>
 
 namespace cchip::sim {
+
+namespace detail {
+
+/// Whether an AXI4 master says size and burst; a block inside of a chip leaves these constants to its top.
+template <class Model, class = void>
+struct HasSize : std::false_type {};
+template <class Model>
+struct HasSize<Model, std::void_t<decltype(std::declval<Model&>().m_axi_arsize)>> : std::true_type {};
+
+}  // namespace detail
 
 struct ClockInfo {
   std::uint64_t clock = 0;  ///< number of the clock, counted from 0 after the last reset

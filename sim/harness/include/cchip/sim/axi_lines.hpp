@@ -201,8 +201,10 @@ class AxiLines : public Agent {
   }
 
   void take_read(const ClockInfo& now, std::uint64_t address, unsigned id) {
-    require(model_.m_axi_arlen + 1U == beats && model_.m_axi_arburst == 1 && (1U << model_.m_axi_arsize) == beat_bytes,
-            "m_axi_ar: not an INCR burst of one line");
+    require(model_.m_axi_arlen + 1U == beats, "m_axi_ar: not a burst of one line");
+    if constexpr (detail::HasSize<Model>::value)
+      require(model_.m_axi_arburst == 1 && (1U << model_.m_axi_arsize) == beat_bytes,
+              "m_axi_ar: not an INCR burst of whole beats");
     require(address % 64 == 0, "m_axi_araddr is not a multiple of 64");
     for (const Read& x : reads_) require(x.id != id, "m_axi_arid is used twice");
     const std::uint64_t number = address / 64;
@@ -220,8 +222,9 @@ class AxiLines : public Agent {
   void take_address() {
     const std::uint64_t address = model_.m_axi_awaddr;
     const std::size_t count = model_.m_axi_awlen + std::size_t{1};
-    require(model_.m_axi_awburst == 1 && (1U << model_.m_axi_awsize) == beat_bytes,
-            "m_axi_aw: not an INCR burst of whole beats");
+    if constexpr (detail::HasSize<Model>::value)
+      require(model_.m_axi_awburst == 1 && (1U << model_.m_axi_awsize) == beat_bytes,
+              "m_axi_aw: not an INCR burst of whole beats");
     require(address % beat_bytes == 0, "m_axi_awaddr is not a multiple of the beat");
     require(address % 64 + count * beat_bytes <= 64, "m_axi_aw: a burst beyond its line");
     addresses_.push_back({address, model_.m_axi_awid, count});

@@ -149,7 +149,8 @@ class AxiMemory : public Agent {
   }
 
   void accept(const ClockInfo& now, std::uint32_t address, std::uint32_t count) {
-    require(model_.m_axi_arsize == 2 && model_.m_axi_arburst == 1, "m_axi_ar: not an INCR burst of 4-byte beats");
+    if constexpr (detail::HasSize<Model>::value)
+      require(model_.m_axi_arsize == 2 && model_.m_axi_arburst == 1, "m_axi_ar: not an INCR burst of 4-byte beats");
     require(address % 4 == 0, "m_axi_araddr is not a multiple of 4");
     require(count <= 16, "m_axi_arlen: more than 16 beats");
     require(address / 4096 == (address + 4 * count - 1) / 4096, "burst crosses a boundary of 4 KiB");
