@@ -400,6 +400,10 @@ module bench;
     if (!$value$plusargs("seed=%d", seed)) seed = 1;
     without_decoupler = $test$plusargs("without_decoupler");
     without_roc = $test$plusargs("without_roc");
+    if ($test$plusargs("wave")) begin
+      $dumpfile("swap.vcd");
+      $dumpvars(1, bench, u_slot, u_controller, u_slot.gen_simulation.u_virtual.u_frames);
+    end
     $readmemh("memory.hex", memory);
     $readmemh("boot.hex", boot_memory);
     repeat (4) @(posedge clk);

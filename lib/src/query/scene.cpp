@@ -12,7 +12,7 @@
 #include "exact/float_mode.hpp"
 #include "exact/ieee.hpp"
 #include "judge/box_pairs.hpp"
-#include "tree/reach.hpp"
+#include "search/line_reach.hpp"
 
 namespace cchip {
 namespace {
@@ -49,8 +49,8 @@ WorldBox world_box(const Object& object, const Pose& pose) {
     const double centre = row[0] * c[0] + row[1] * c[1] + row[2] * c[2] + t;
     // The second term is for what underflows, in the reach before it is multiplied by the object's unit.
     const double slack = box_limit * size + 0x1p-1060 * (1 + tree.extent());
-    box.least[axis] = centre - (bvh::reach_along(tree, {-row[0], -row[1], -row[2]}) + slack);
-    box.greatest[axis] = centre + (bvh::reach_along(tree, row) + slack);
+    box.least[axis] = centre - (reach_along(tree, {-row[0], -row[1], -row[2]}) + slack);
+    box.greatest[axis] = centre + (reach_along(tree, row) + slack);
   }
   return box;
 }

@@ -5,12 +5,11 @@
 #include <cmath>
 
 #include "exact/ieee.hpp"
-#include "tree/reach.hpp"
+#include "line_reach.hpp"
 
 namespace cchip {
 namespace {
 
-using bvh::reach_along;
 using bvh::SupportTree;
 using Vector = std::array<double, 3>;
 

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "line_reach.hpp"
 #include "simd_distance.hpp"
 
 namespace cchip::simd {
@@ -186,24 +187,6 @@ struct Task {
   }
 };
 
-/// How far a node reaches along a direction of its object's frame: at most this.
-inline float reach_along(const SupportLine& line, const std::array<float, 3>& m) {
-  const std::array<float, 3> size = {std::abs(m[0]), std::abs(m[1]), std::abs(m[2])};
-  const std::array<std::size_t, 3> negative = {m[0] < 0 ? 1U : 0U, m[1] < 0 ? 1U : 0U, m[2] < 0 ? 1U : 0U};
-  std::size_t greatest = size[1] > size[0] ? 1 : 0;
-  if (size[2] > size[greatest]) greatest = 2;
-  std::size_t least = greatest == 0 ? 1 : 0;  // of the other two
-  const std::size_t other = 3 - greatest - least;
-  if (size[other] < size[least]) least = other;
-  const float a = size[greatest];
-  const float b = size[3 - greatest - least];
-  const float c = size[least];
-  const std::size_t face = bvh::first_face_word + 4 * least + negative[(least + 1) % 3] + 2 * negative[(least + 2) % 3];
-  const std::size_t corner = bvh::first_corner_word + negative[0] + 2 * negative[1] + 4 * negative[2];
-  return (a - b) * line.word[2 * greatest + negative[greatest]] + 1.41421356F * (b - c) * line.word[face] +
-         1.73205081F * c * line.word[corner];
-}
-
 /// True only if the node of the moved object lies beside the plane of each face of the fixed object's leaf: planes of
 /// volumes leave much room around a face that is askew, in which all of a small object may lie.
 inline bool beside_faces(const Task& task, const SupportLine& node, NodeRef leaf) {
@@ -228,14 +211,13 @@ inline bool beside_faces(const Task& task, const SupportLine& node, NodeRef leaf
       high = std::max(high, along(face.v[i]));
     }
     std::array<float, 3> m;
-    std::array<float, 3> against;
     for (std::size_t k = 0; k < 3; ++k) {
       m[k] = place.m[k] * axis[0] + place.m[3 + k] * axis[1] + place.m[6 + k] * axis[2];
-      against[k] = -m[k];
     }
+    const BasicLineReach<float> reach(m, 1);
     const float centre = along(place.t);
     const float size = std::abs(axis[0]) + std::abs(axis[1]) + std::abs(axis[2]);
-    const float gap = std::max(low - (centre + reach_along(node, m)), centre - reach_along(node, against) - high);
+    const float gap = std::max(low - (centre + reach.along(node)), centre - reach.against(node) - high);
     if (!(gap > 1.02F * size * task.planes.side_error && size > shortest_axis)) return false;
   }
   return true;
