@@ -485,12 +485,58 @@ Qed.
 Lemma cofactors_zero u v : zero u \/ zero v -> zero (cofactors u v).
 Proof. unfold zero, cofactors; cbn. intros [(-> & -> & ->) | (-> & -> & ->)]; repeat split; ring. Qed.
 
+(** The axes of [listed] that need no common plane are general ones. *)
+Lemma general_by_a A B a a' a'' : In a (corners A) -> In a' (corners A) -> In a'' (corners A) ->
+  separates (corners A) (corners B) (cofactors (minus a a') (minus a a'')) -> some_axis A B (general_axes A B).
+Proof.
+  intros I I' I'' S. destruct (normal_of A a a' a'' I I' I'') as (s & E). exists (normal A).
+  split; [cbn; auto | now apply (separates_multiple A B _ _ s E)].
+Qed.
+Lemma general_by_b A B b b' b'' : In b (corners B) -> In b' (corners B) -> In b'' (corners B) ->
+  separates (corners A) (corners B) (cofactors (minus b b') (minus b b'')) -> some_axis A B (general_axes A B).
+Proof.
+  intros I I' I'' S. destruct (normal_of B b b' b'' I I' I'') as (s & E). exists (normal B).
+  split; [cbn; auto | now apply (separates_multiple A B _ _ s E)].
+Qed.
+Lemma general_by_both A B a a' b b' : In a (corners A) -> In a' (corners A) -> In b (corners B) -> In b' (corners B) ->
+  separates (corners A) (corners B) (cofactors (minus a a') (minus b b')) -> some_axis A B (general_axes A B).
+Proof.
+  intros I I' J J' S.
+  destruct (side_of A a a' I I') as [Z | (e & s & IE & _ & E)];
+    [exfalso; apply (not_zero_axis A B _ S), cofactors_zero; auto |].
+  destruct (side_of B b b' J J') as [Z | (f & t & IF & _ & F)];
+    [exfalso; apply (not_zero_axis A B _ S), cofactors_zero; auto |].
+  exists (cofactors e f).
+  split; [apply in_or_app; right; apply in_cross_axes; eauto | now apply (separates_cofactors A B e f _ _ s t E F)].
+Qed.
+
 (** The one side of an edge at which the hardware looks. *)
 Definition one_sided (d : component) (A B : triangle) : Prop :=
   (exists a a', In a (corners A) /\ In a' (corners A) /\
      faces (corners A) (corners B) a (cofactors (minus a a') (unit d))) \/
   (exists b b', In b (corners B) /\ In b' (corners B) /\
      faces (corners B) (corners A) b (cofactors (minus b b') (unit d))).
+
+(** Degenerate triangles, too: if no general axis separates, their boxes do, or one side of an edge is enough. *)
+Theorem one_side_or_boxes A B : ~ meet (corners A) (corners B) ->
+  some_axis A B (general_axes A B) \/ (exists k, separates (corners A) (corners B) (unit k)) \/
+  (exists k, one_sided k A B).
+Proof.
+  intros H.
+  assert (corners A <> [] /\ corners B <> []) as (NA & NB).
+  { destruct A as ((?, ?), ?), B as ((?, ?), ?). split; discriminate. }
+  destruct (apart_listed (corners A) (corners B) NA NB H) as
+    [a a' a'' I I' I'' S | b b' b'' I I' I'' S | a a' b b' I I' J J' S
+     | N a a' Nz P I I' S | N b b' Nz P I I' S | d1 k I Nz P S].
+  - left. now apply (general_by_a A B a a' a'').
+  - left. now apply (general_by_b A B b b' b'').
+  - left. now apply (general_by_both A B a a' b b').
+  - right; right. destruct (component_not_zero N Nz) as (k & K). rewrite dotq_comm in K.
+    exists k. left. exists a, a'. repeat (split; auto). now apply S.
+  - right; right. destruct (component_not_zero N Nz) as (k & K). rewrite dotq_comm in K.
+    exists k. right. exists b, b'. repeat (split; auto). now apply S.
+  - right; left. now exists k.
+Qed.
 
 Theorem axes_one_sided A B : ~ meet (corners A) (corners B) ->
   some_axis A B (general_axes A B) \/
@@ -527,16 +573,9 @@ Proof.
   all: destruct (apart_listed (corners A) (corners B) NA NB H) as
     [a a' a'' I I' I'' S | b b' b'' I I' I'' S | a a' b b' I I' J J' S
      | N a a' Nz P I I' S | N b b' Nz P I I' S | d1 k I Nz P S].
-  all: try (left; destruct (normal_of A a a' a'' I I' I'') as (s & E); exists (normal A);
-    split; [cbn; auto | now apply (separates_multiple A B _ _ s E)]).
-  all: try (left; destruct (normal_of B b b' b'' I I' I'') as (s & E); exists (normal B);
-    split; [cbn; auto | now apply (separates_multiple A B _ _ s E)]).
-  all: try (left; destruct (side_of A a a' I I') as [Z | (e & s & IE & _ & E)];
-    [exfalso; apply (not_zero_axis A B _ S), cofactors_zero; auto |];
-    destruct (side_of B b b' J J') as [Z | (f & t & IF & _ & F)];
-    [exfalso; apply (not_zero_axis A B _ S), cofactors_zero; auto |];
-    exists (cofactors e f); split;
-    [apply in_or_app; right; apply in_cross_axes; eauto | now apply (separates_cofactors A B e f _ _ s t E F)]).
+  all: try (left; now apply (general_by_a A B a a' a'')).
+  all: try (left; now apply (general_by_b A B b b' b'')).
+  all: try (left; now apply (general_by_both A B a a' b b')).
   - right; left. split; auto. destruct (component_not_zero N Nz) as (k & K). rewrite dotq_comm in K.
     destruct (side_of A a a' I I') as [Z | (e & s & IE & _ & E)];
       [exfalso; apply (not_zero_axis A B _ (proj1 (S k K))), cofactors_zero; auto |].

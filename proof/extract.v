@@ -6,6 +6,7 @@ Require Import ZArith Extraction ExtrOcamlBasic.
 Print Assumptions accepted_holds.
 Print Assumptions axes_decide.
 Print Assumptions axes_one_sided.
+Print Assumptions one_side_or_boxes.
 Print Assumptions seventeen_axes.
 Print Assumptions two_axes_decide.
 Print Assumptions directed_is_exhaustive.
