@@ -25,28 +25,43 @@ std::vector<Mesh> bodies(std::mt19937_64& random) {
 
 bool same(const bvh::Dop26& x, const bvh::Dop26& y) { return x.least == y.least && x.greatest == y.greatest; }
 
-/// The words of a node with this volume, one by one as SupportLine says, with the allowances for rounding.
-std::array<std::int16_t, bvh::support_words> plain_words(const bvh::Dop26& dop, const Vec3d& centre, double unit) {
-  std::array<std::int16_t, bvh::support_words> words = {};
+using Words = std::array<std::int16_t, bvh::support_words>;
+
+/// The words of all nodes, one by one as SupportLine says, with the allowances for rounding: of vertices, from the
+/// leaves up.
+std::vector<Words> plain_words(const Mesh& mesh, const bvh::Tree& tree, const Vec3d& centre, double unit) {
   const double slack = 0x1p-49 * (centre.cwiseAbs().sum() + 4.0 * bvh::support_most * unit) + 0x1p-1060;
-  for (std::size_t w = 0; w < words.size(); ++w) {
-    const std::array<int, 3> v = bvh::support_direction(w);
-    for (std::size_t d = 0; d < bvh::directions.size(); ++d) {
-      const std::array<int, 3>& u = bvh::directions[d];
-      const bool along = v == u;
-      if (!along && v != std::array<int, 3>{-u[0], -u[1], -u[2]}) continue;
-      const double at = u[0] * centre[0] + u[1] * centre[1] + u[2] * centre[2];
-      const double reach = (along ? dop.greatest[d] - at : at - dop.least[d]) + slack;
-      const double length = std::sqrt(static_cast<double>(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+  std::vector<Words> all(tree.nodes.size());
+  for (std::size_t n = all.size(); n-- > 0;) {
+    const bvh::TreeNode& node = tree.nodes[n];
+    Words& words = all[n];
+    if (node.kind == bvh::NodeKind::inner) {
+      words = all[node.first];
+      for (std::size_t k = 1; k < node.count; ++k) {
+        for (std::size_t w = 0; w < words.size(); ++w) words[w] = std::max(words[w], all[node.first + k][w]);
+      }
+      continue;
+    }
+    for (std::size_t w = 0; w < words.size(); ++w) {
+      const std::array<int, 3> d = bvh::support_direction(w);
+      if (d == std::array<int, 3>{0, 0, 0}) continue;
+      const auto along = [&d](const Vec3d& v) { return d[0] * v[0] + d[1] * v[1] + d[2] * v[2]; };
+      double reach = -std::numeric_limits<double>::infinity();
+      for (std::size_t k = 0; k < node.count; ++k) {
+        const Primitive p = mesh.primitive(tree.faces[node.first + k]);
+        for (std::size_t i = 0; i < p.vertex_count(); ++i)
+          reach = std::max(reach, along(p.v[i]) - along(centre) + slack);
+      }
+      const double length = std::sqrt(static_cast<double>(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
       const double steps = std::ceil(reach / (length * unit) + 0x1p-30);
       const double most = bvh::support_most;
-      words[w] = static_cast<std::int16_t>(std::max(-most, std::min(most, steps)));
+      words[w] = static_cast<std::int16_t>(std::max(1 - most, std::min(most, steps)));
     }
   }
-  return words;
+  return all;
 }
 
-/// \param tree of the mesh, with its volumes
+/// \param tree of the mesh
 void require_plain(const bvh::SupportTree& got, const Mesh& mesh, const bvh::Tree& tree) {
   const bvh::Dop26& all = tree.nodes.front().dop;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -63,8 +78,9 @@ void require_plain(const bvh::SupportTree& got, const Mesh& mesh, const bvh::Tre
   REQUIRE(got.unit() == std::max(radius * (1 + 0x1p-40) / bvh::support_most, 0x1p-1000));
   REQUIRE(got.extent() == got.centre().cwiseAbs().maxCoeff() + bvh::support_most * got.unit());
   REQUIRE(got.size() + 1 == tree.nodes.size());
+  const std::vector<Words> all_words = plain_words(mesh, tree, got.centre(), got.unit());
   for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
-    auto words = plain_words(tree.nodes[n].dop, got.centre(), got.unit());
+    Words words = all_words[n];
     const bvh::SupportLine& line = got.lines()[n == 0 ? got.size() : n - 1];
     words[6] = line.word[6];
     words[7] = line.word[7];
@@ -117,7 +133,7 @@ TEST_CASE("moved: the nodes of a tree come back from the object, and a refit res
   }
 }
 
-TEST_CASE("moved: the tree is, word by word, that of its volumes after a refit", "[lib][collide]") {
+TEST_CASE("moved: the tree is, word by word, that of its vertices after a refit", "[lib][collide]") {
   std::mt19937_64 random(sim::seed_from_environment());
   std::vector<Mesh> meshes = assorted_meshes(random);
   for (Mesh& mesh : bodies(random)) meshes.push_back(std::move(mesh));
