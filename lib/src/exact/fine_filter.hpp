@@ -22,7 +22,9 @@ class FineFilter {
   double value() const { return high_; }
   double error() const { return error_; }
   /// Is its sign?
-  bool is_known() const { return std::abs(high_) * (1 - 0x1p-50) > error_ || (high_ == 0 && error_ == 0); }
+  bool is_known() const { return std::abs(high_) * (1 - 0x1p-50) > error_ || is_zero(); }
+  /// Exactly?
+  bool is_zero() const { return high_ == 0 && error_ == 0; }
   /// 0 also if it is not known.
   int sign() const { return !is_known() || high_ == 0 ? 0 : high_ > 0 ? 1 : -1; }
   friend int sign_if_known(const FineFilter& x, bool& open) {
@@ -49,6 +51,7 @@ class FineFilter {
   }
   friend FineFilter operator-(const FineFilter& x, const FineFilter& y) { return x + (-y); }
   friend FineFilter operator*(const FineFilter& x, const FineFilter& y) {
+    if (x.is_zero() || y.is_zero()) return {};
     const double product = x.high_ * y.high_;
     const double rest = std::fma(x.high_, y.high_, -product);
     const double p = x.high_ * y.low_;

@@ -236,6 +236,32 @@ void root_of(const Fraction& square, DistanceBounds& result) {
   result.upper = std::nextafter(result.lower, infinity);
 }
 
+/// The transpose of the linear part times n.
+Vec<FineFilter> in_frame(const Eigen::Matrix3d& linear, const Vec<FineFilter>& n) {
+  Vec<FineFilter> m;
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      m[k] += n[i] * FineFilter(linear(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)));
+    }
+  }
+  return m;
+}
+
+Vec<FineFilter> operator-(const Vec<FineFilter>& v) { return {-v[0], -v[1], -v[2]}; }
+
+/// Is the line between the nearest points at right angles to a plane: that of a face, or that which two edges span?
+bool have_plane(FeaturePair pair) { return exact::features[pair.a].count + exact::features[pair.b].count == 4; }
+
+/// Across that plane, on either side. \pre have_plane(pair)
+template <class Num>
+Vec<Num> across_plane(const std::array<Vec<Num>, 4>& a, const std::array<Vec<Num>, 4>& b, FeaturePair pair) {
+  const exact::Feature& f = exact::features[pair.a];
+  const exact::Feature& g = exact::features[pair.b];
+  return f.count == 3   ? cross(a[f.at[1]] - a[f.at[0]], a[f.at[2]] - a[f.at[0]])
+         : g.count == 3 ? cross(b[g.at[1]] - b[g.at[0]], b[g.at[2]] - b[g.at[0]])
+                        : cross(a[f.at[1]] - a[f.at[0]], b[g.at[1]] - b[g.at[0]]);
+}
+
 /// A multiple, with a positive factor, of the vector from the nearest point of A's feature to that of B's.
 template <class Num>
 Vec<Num> between_features(const std::array<Vec<Num>, 4>& a, const std::array<Vec<Num>, 4>& b, FeaturePair pair) {
@@ -251,9 +277,7 @@ Vec<Num> between_features(const std::array<Vec<Num>, 4>& a, const std::array<Vec
     for (std::size_t k = 0; k < 3; ++k) across[k] = between[k] * square - edge[k] * along;
     return across;
   }
-  Vec<Num> normal = f.count == 3   ? cross(a[f.at[1]] - a[f.at[0]], a[f.at[2]] - a[f.at[0]])
-                    : g.count == 3 ? cross(b[g.at[1]] - b[g.at[0]], b[g.at[2]] - b[g.at[0]])
-                                   : cross(a[f.at[1]] - a[f.at[0]], b[g.at[1]] - b[g.at[0]]);
+  Vec<Num> normal = across_plane(a, b, pair);
   if (dot(normal, between).sign() < 0) {
     for (Num& x : normal) x = -x;
   }
@@ -274,6 +298,7 @@ PosedDistances::PosedDistances(const Pose& pose_a, const Pose& pose_b)
   const exact::Offset offset(pose_a, pose_b);
   offset_ = offset.value;
   offset_error_ = offset.error;
+  same_linear_ = pose_a.linear() == pose_b.linear();
   row_sum_a_ = pose_a.linear().cwiseAbs().rowwise().sum().maxCoeff();
   row_sum_b_ = pose_b.linear().cwiseAbs().rowwise().sum().maxCoeff();
 }
@@ -335,7 +360,8 @@ class PosedDistances::Pair {
   /// The distance, or the doubles beside it, by the features that are nearest up to rounding, in sums of two doubles.
   struct Fine {
     DistanceBounds bounds;
-    Vec<FineFilter> normal;  ///< from A to B
+    Vec<FineFilter> normal_a;  ///< outward at the nearest point, in A's coordinates
+    Vec<FineFilter> normal_b;  ///< the same of B
   };
   /// \returns nothing if they cannot tell
   std::optional<Fine> fine() const {
@@ -354,21 +380,29 @@ class PosedDistances::Pair {
       if (square.inside[k].sign() <= 0) return std::nullopt;
     }
     // All vertices but the features' own lie behind the planes through the nearest points.
-    const Vec<FineFilter> normal = between_features(a, b, near_.pair);
-    const auto is_behind = [&normal](const std::array<Vec<FineFilter>, 4>& v, std::size_t count,
-                                     const exact::Feature& feature, int sign) {
+    const auto is_behind = [](const Vec<FineFilter>& outward, const std::array<Vec<FineFilter>, 4>& v,
+                              std::size_t count, const exact::Feature& feature) {
       for (std::size_t i = 0; i < count; ++i) {
         const auto* const end = feature.at.begin() + feature.count;
         if (std::find(feature.at.begin(), end, i) != end) continue;
-        const FineFilter height = exact::dot(normal, v[i] - v[feature.at[0]]);
-        if (!height.is_known() || height.sign() == -sign) return false;
+        const FineFilter height = exact::dot(outward, v[i] - v[feature.at[0]]);
+        if (!height.is_known() || height.sign() > 0) return false;
       }
       return true;
     };
-    if (!is_behind(a, r_.count_a, exact::features[near_.pair.a], -1) ||
-        !is_behind(b, r_.count_b, exact::features[near_.pair.b], 1)) {
-      return std::nullopt;
-    }
+    const auto are_behind = [&](const Vec<FineFilter>& normal, const std::array<Vec<FineFilter>, 4>& v_a,
+                                const std::array<Vec<FineFilter>, 4>& v_b) {
+      return is_behind(normal, v_a, r_.count_a, exact::features[near_.pair.a]) &&
+             is_behind(-normal, v_b, r_.count_b, exact::features[near_.pair.b]);
+    };
+    const Vec<FineFilter> normal = between_features(a, b, near_.pair);
+    const std::optional<Vec<FineFilter>> common = common_normal(a, b, normal);
+    const bool all_behind = common ? are_behind(*common, unmoved(a_), unmoved(b_)) : are_behind(normal, a, b);
+    if (!all_behind) return std::nullopt;
+    const auto fine_of = [&](const DistanceBounds& bounds) {
+      if (common) return Fine{bounds, *common, -*common};
+      return Fine{bounds, in_frame(poses_.pose_a_.linear(), normal), in_frame(poses_.pose_b_.linear(), -normal)};
+    };
     // The greatest double whose square is not more, and the next one if it is less.
     const auto excess = [&square](double x) { return square.over - FineFilter(x) * FineFilter(x) * square.under; };
     DistanceBounds result = bounds();
@@ -378,14 +412,14 @@ class PosedDistances::Pair {
       const FineFilter here = excess(result.lower);
       if (!here.is_known()) break;
       result.upper = here.sign() == 0 ? result.lower : std::nextafter(result.lower, infinity);
-      if (here.sign() == 0) return Fine{result, normal};
+      if (here.sign() == 0) return fine_of(result);
       if (here.sign() < 0) {
         result.lower = std::nextafter(result.lower, 0.0);
         continue;
       }
       const FineFilter next = excess(result.upper);
       if (!next.is_known()) break;
-      if (next.sign() < 0) return Fine{result, normal};
+      if (next.sign() < 0) return fine_of(result);
       result.lower = result.upper;
     }
     return std::nullopt;
@@ -409,6 +443,32 @@ class PosedDistances::Pair {
   }
 
  private:
+  static std::array<Vec<FineFilter>, 4> unmoved(const Primitive& p) {
+    return exact::filter_points(p, Eigen::Matrix3d::Identity(), Vec<FineFilter>{});
+  }
+  /// Where both objects are under the same linear map L, a plane has the same normal in the coordinates of both, and it
+  /// is that of their own vertices: L^T (L u x L v) = det L (u x v). So vertices on the plane are known to be there.
+  /// \param normal of the same plane in the world, from A to B
+  /// \returns nothing if the maps are not the same, or a sign is not known
+  std::optional<Vec<FineFilter>> common_normal(const std::array<Vec<FineFilter>, 4>& a,
+                                               const std::array<Vec<FineFilter>, 4>& b,
+                                               const Vec<FineFilter>& normal) const {
+    if (!poses_.same_linear_ || !have_plane(near_.pair)) return std::nullopt;
+    const Vec<FineFilter> unsigned_normal = across_plane(a, b, near_.pair);
+    const Eigen::Matrix3d& linear = poses_.pose_a_.linear();
+    std::array<Vec<FineFilter>, 3> column;
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        column[k][i] = linear(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
+      }
+    }
+    const int sign =
+        exact::dot(unsigned_normal, normal).sign() * exact::dot(exact::cross(column[0], column[1]), column[2]).sign();
+    if (sign == 0) return std::nullopt;
+    const Vec<FineFilter> own = across_plane(unmoved(a_), unmoved(b_), near_.pair);
+    return sign > 0 ? own : -own;
+  }
+
   const PosedDistances& poses_;
   const Primitive& a_;
   const Primitive& b_;
@@ -493,17 +553,6 @@ FineFilter fine_filter_of(BigInt x, int exponent) {
     x -= BigInt(top << drop);
   }
   return x == 0 ? sum : FineFilter(sum, std::abs(sum.value()) * 0x1p-104 + 0x1p-900);
-}
-
-/// The transpose of the linear part times n.
-Vec<FineFilter> in_frame(const Eigen::Matrix3d& linear, const Vec<FineFilter>& n) {
-  Vec<FineFilter> m;
-  for (std::size_t k = 0; k < 3; ++k) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      m[k] += n[i] * FineFilter(linear(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)));
-    }
-  }
-  return m;
 }
 
 Vec<FineFilter> fine_filters_of(const Vec<BigInt>& normal) {
@@ -611,8 +660,8 @@ NearestPlanes::NearestPlanes(const PosedDistances& distances, const Primitive& a
   Vec<FineFilter> normal_a;
   Vec<FineFilter> normal_b;
   if (fine) {
-    normal_a = in_frame(distances.pose_a_.linear(), fine->normal);
-    normal_b = in_frame(distances.pose_b_.linear(), {-fine->normal[0], -fine->normal[1], -fine->normal[2]});
+    normal_a = fine->normal_a;
+    normal_b = fine->normal_b;
   }
   if (!fine || !is_precise(normal_a) || !is_precise(normal_b)) {
     make_exactly(distances, a, b);

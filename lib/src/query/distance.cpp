@@ -212,14 +212,8 @@ class DistanceSearch {
     left_out_ = std::min(left_out_, gaps_.left_out);
     if (near == 0) return false;
     if (stats_.steps > slab_steps) near = near_by_slabs(near, lines_a, lines_b);
-    unsigned nearest = 16;
-    float least = nearest_ ? 1.5625F * pair.square : std::numeric_limits<float>::infinity();
-    for (unsigned left = near; left != 0; left &= left - 1) {
-      const unsigned number = lowest_bit(left);
-      if (!(gaps_.square[number] <= least)) continue;
-      nearest = number;
-      least = gaps_.square[number];
-    }
+    const unsigned nearest =
+        nearest_of(near, nearest_ ? 1.5625F * pair.square : std::numeric_limits<float>::infinity());
     const GapQueue::Pair above = pair;
     for (unsigned left = near; left != 0; left &= left - 1) {
       const unsigned number = lowest_bit(left);
@@ -234,6 +228,36 @@ class DistanceSearch {
       }
     }
     return nearest != 16;
+  }
+
+  /// The one of `near` with the least gap, which is at most `most`, or 16; of those with about the same gap, as between
+  /// flat parts, the one whose middles are nearest.
+  unsigned nearest_of(unsigned near, float most) const {
+    unsigned nearest = 16;
+    float least = most;
+    for (unsigned left = near; left != 0; left &= left - 1) {
+      const unsigned number = lowest_bit(left);
+      if (!(gaps_.square[number] <= least)) continue;
+      nearest = number;
+      least = gaps_.square[number];
+    }
+    if (nearest == 16) return nearest;
+    float least_between = std::numeric_limits<float>::infinity();
+    for (unsigned left = near; left != 0; left &= left - 1) {
+      const unsigned number = lowest_bit(left);
+      if (!(gaps_.square[number] <= least * 1.01F)) continue;
+      float between = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto& a = gaps_.a[number / 4];
+        const auto& b = gaps_.b[number % 4];  // its lanes are along the opposite directions
+        const float x = 2 * frame_.centre_b[k] - (a[2 * k] - a[2 * k + 1]) - (b[2 * k] - b[2 * k + 1]);
+        between += x * x;
+      }
+      if (!(between < least_between)) continue;
+      nearest = number;
+      least_between = between;
+    }
+    return nearest;
   }
 
   /// In a long search, by the slabs of both.
@@ -312,8 +336,30 @@ class DistanceSearch {
     best_ = bounds;
     nearest_ = {faces.a, faces.b};
     as_near_ = behind_ = 0;
-    set_axis(bounds.point_b - bounds.point_a);
-    is_between_planes_ = whole_gap() >= nearly * upper_;
+    set_axis(axis_of(faces));
+    const double whole = whole_gap();
+    is_between_planes_ = whole >= nearly * upper_ && whole + gap_.resolution() >= upper_;
+  }
+
+  /// Along the line between the nearest points, or across one of the faces if the whole objects lie on both sides of a
+  /// gap there, as flat parts do: there these faces may not be the nearest ones, but all bounds are close.
+  Vec3d axis_of(const Faces& faces) const {
+    const Vec3d line = best_.point_b - best_.point_a;
+    const auto gap = [this](const Vec3d& axis) {
+      return gap_.rough_gap(axis, a_.tree.lines()[a_.tree.whole().first()], b_.tree.lines()[b_.tree.whole().first()]);
+    };
+    double most = gap(line);
+    if (most >= nearly * upper_) return line;
+    most = std::max(most, upper_ / 2);
+    Vec3d axis = line;
+    for (Vec3d normal : {gap_.normal_a(a_.mesh.primitive(faces.a)), gap_.normal_b(b_.mesh.primitive(faces.b))}) {
+      if (normal.dot(line) < 0) normal = -normal;
+      const double across = gap(normal);
+      if (!(across > most)) continue;
+      most = across;
+      axis = normal;
+    }
+    return axis;
   }
 
   void answer(DistanceResult& result) {
@@ -406,7 +452,7 @@ class DistanceSearch {
   DistanceBounds best_;             ///< of these
   std::uint64_t as_near_ = 0;       ///< items since then that are about as near
   std::uint64_t behind_ = 0;        ///< of these lie behind planes
-  bool is_between_planes_ = false;  ///< by the frame the whole objects are nearly as far apart
+  bool is_between_planes_ = false;  ///< by the frame the whole objects are as far apart, as closely as it tells
   std::optional<exact::NearestPlanes> planes_;
   bool all_behind_ = false;  ///< nothing is nearer than the faces that planes_ is of
   std::optional<FacePair> planes_of_;

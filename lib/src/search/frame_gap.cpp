@@ -171,6 +171,12 @@ double FrameGap::slab_gap(const FrameSlab& a, const FrameSlab& b) const {
   return std::max(gap(a, b, 1), gap(b, a, -1));
 }
 
+double FrameGap::rough_gap(const Vec3d& axis, const bvh::SupportLine& line_a, const bvh::SupportLine& line_b) const {
+  const Vec3d n = axis.normalized();
+  return n.dot(centre_between_) - LineReach(a_.linear.transpose() * n, a_.unit).along(line_a) -
+         LineReach(b_.linear.transpose() * n, b_.unit).against(line_b);
+}
+
 Vec3d FrameGap::middle(const Side& side, const bvh::SupportLine* lines, std::size_t count) {
   Vec3d sum = Vec3d::Zero();
   for (std::size_t i = 0; i < count; ++i) {

@@ -52,6 +52,14 @@ class FrameGap {
   /// At most the distance of the nodes in units of the frame, by both slabs; may be negative.
   double slab_gap(const FrameSlab& a, const FrameSlab& b) const;
 
+  /// What the rounding of words may take from a gap.
+  double resolution() const { return 4 * (a_.stretch * a_.unit + b_.stretch * b_.unit); }
+  /// About how far apart two nodes are along an axis of the world that leads from A to B; may be negative.
+  double rough_gap(const Vec3d& axis, const bvh::SupportLine& line_a, const bvh::SupportLine& line_b) const;
+  /// Across a face, in the world, of any length and on either side.
+  Vec3d normal_a(const Primitive& face) const { return normal(a_, face); }
+  Vec3d normal_b(const Primitive& face) const { return normal(b_, face); }
+
   /// The axes times these numbers.
   Vec3d in_world(const Vec3d& along_axes) const { return axes_ * along_axes; }
 
@@ -76,6 +84,9 @@ class FrameGap {
 
   static FrameSlab slab(const Side& side, const bvh::SupportLine& line,
                         const std::array<float, simd::reach_lanes>& reach, int sign);
+  static Vec3d normal(const Side& side, const Primitive& face) {
+    return (side.linear * (face.v[1] - face.v[0])).cross(side.linear * (face.v[2] - face.v[0]));
+  }
   static Vec3d middle(const Side& side, const bvh::SupportLine* lines, std::size_t count);
   double slack(const Vec3d& axis) const;
 

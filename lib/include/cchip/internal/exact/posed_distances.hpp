@@ -64,6 +64,7 @@ class PosedDistances {
   Pose pose_b_;
   Vec3d offset_;        ///< translation of A relative to B, rounded
   Vec3d offset_error_;  ///< bound on its error; exactly 0 where it is exact
+  bool same_linear_;    ///< bit for bit but for the signs of zeros
   double row_sum_a_;    ///< greatest sum of magnitudes in a row of the linear part
   double row_sum_b_;
 };
