@@ -8,7 +8,7 @@ usage: fabric.py [--set small|point|tests] [--seed N] [--without-decoupler | --w
 
 --set      small (the default): two small modules and a blank on 10 x 8 tiles, with faulty bitstreams, three minutes.
            point: the test of points against triangles and a blank, 28 x 26 tiles, 2.1 GB, twenty minutes of CPU.
-           tests: this test, then that of two triangles in its place, 31 x 30 tiles, 2.7 GB, an hour of CPU
+           tests: this test, then that of two triangles in its place, 31 x 30 tiles, 2.7 GB, forty minutes of CPU
 --seed     of the traffic (default 1)
 --keep     takes the fabric and the bitstreams of an earlier run as they are
 --wave     writes swap.vcd beside the bitstreams: bench, slot, controller and the writer of frames
