@@ -170,7 +170,8 @@ def rows():
     table += [Row(name, "cchip_chip", (("RM_ID", module), *more), shape="", seeds=8, block=True, synth=" -nowidelut",
                   owners=CHIP_BLOCKS, floorplan=True,
                   router="router2", families=name == "chip")
-              for name, module, more in (("chip_small", 1, small), ("chip_tri", 1, ()), ("chip", 3, ()))]
+              for name, module, more in (("chip_small", 1, small), ("chip_small_quad", 3, small), ("chip_tri", 1, ()),
+                                         ("chip", 3, ()))]
     return {row.name: row for row in table}
 
 
