@@ -17,7 +17,7 @@ usage: fabric.py [--set small|point|tests] [--seed N] [--without-decoupler | --w
 
 Needs Python 3.12 or newer for FABulous (installed from PyPI below build/fabric), and Debian's yosys, nextpnr-generic
 and iverilog. Last line: fabric swaps=N pairs=N differences=0 static_wrong=0 leaked=0. Exit codes: 0 right, 1 wrong,
-2 bad arguments or no tool."""
+2 bad arguments, 77 a tool is missing."""
 import argparse
 import collections
 import dataclasses
@@ -530,7 +530,7 @@ def main():
         right = simulate(options.set, kind, work, options)
     except Failed as error:
         print(f"fabric.py: {error}", file=sys.stderr)
-        return 2 if str(error).startswith(("no ", "FABulous needs")) else 1
+        return 77 if str(error).startswith(("no ", "FABulous needs")) else 1
     return 0 if right else 1
 
 
