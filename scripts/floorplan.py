@@ -53,8 +53,8 @@ PLAN = (
     (r"u_traversal", RAM, natural, [(46, range(6, 8))]),
     (r"", RAM, natural, [(22, range(8, 11))]),
     (r"u_bv_unit", MULTIPLIER, natural, [(58, range(0, 7)), (34, range(0, 6)), (10, range(0, 7))]),
-    (r"u_transform", MULTIPLIER, natural, [(34, range(7, 12)), (58, range(7, 11))]),
-    (r"", MULTIPLIER, natural, [(10, range(7, 13)), (34, (6, 12)), (58, range(11, 13))]),
+    (r"u_transform", MULTIPLIER, natural, [(58, range(7, 13)), (34, range(10, 13))]),
+    (r"", MULTIPLIER, natural, [(10, range(7, 13)), (34, (7, 8, 9, 6))]),
 )
 
 

@@ -13,7 +13,6 @@
 #include <cchip/machines/simulated_chip.hpp>
 #include <cchip/machines/simulated_refit.hpp>
 #include <cchip/waves/wave_layout.hpp>
-#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -33,40 +32,28 @@ void write_layout(const SimulatedChipOptions& options) {
                               " slots with swaps; 1 or 2, or 0 for a static chip");
 }
 
-struct RefitConfig {
-  using Model = Vcchip_refit_axi;
-  static constexpr int DATA_W = bus_w;
-};
-
-/// With a refit engine on the same memory. The engine works while the chip's clock stands still: the host waits for it,
-/// and whether queries of other images would have gone on meanwhile cannot be seen.
+/// With a refit engine on its bus: queries of other images go on while it works.
 template <class Model>
-class SimulatedChip final : public sim::ChipMachine<Model, bus_w> {
+class SimulatedChip final : public sim::ChipMachine<Model, bus_w, sim::BusWithRefit<Model, Vcchip_refit_axi, bus_w>> {
  public:
   explicit SimulatedChip(const SimulatedChipOptions& options)
-      : sim::ChipMachine<Model, bus_w>(sim::without_timeout(options.seed, options.trace_path, options.trace_clocks)) {
+      : SimulatedChip::ChipMachine(sim::without_timeout(options.seed, options.trace_path, options.trace_clocks)) {
     this->memory().options = options.memory;
     write_layout(options);
   }
 
   bool has_refit() const override { return true; }
   RefitEnd refit(std::uint32_t base, std::uint32_t lines, std::uint32_t root) override {
-    constexpr std::uint64_t clocks_a_line = 4000;  // some 110, and what memory takes
-    if (!engine_) engine_.emplace(sim::without_timeout(this->simulation().seed()));
-    engine_->memory().options = this->memory().options;
-    std::vector<Line> image;
-    for (std::uint32_t n = 0; n < lines; ++n) image.push_back(this->memory().line(std::uint64_t{base} + n));
-    engine_->place(base, image);
+    constexpr std::uint64_t clocks_a_line = 4000;  // some 100, what memory takes, and what queries take of it
     const std::uint64_t most_clocks = clocks_a_line * (lines + 100);
-    RefitEnd end = engine_->refit(base, lines, root, most_clocks);
-    for (std::uint64_t n = 0; engine_->top().outstanding != 0 && n < most_clocks; ++n) engine_->step();
-    end.outstanding = engine_->top().outstanding != 0;
-    this->memory().write(base, engine_->lines(base, lines));
+    auto& commands = this->bus().commands();
+    commands.start(base, lines, root);
+    this->simulation().run_until([&] { return !commands.at_work(); }, most_clocks, "the end of a refit");
+    RefitEnd end = commands.end();
+    for (std::uint64_t n = 0; !this->bus().is_settled() && n < most_clocks; ++n) this->proceed();
+    end.outstanding = !this->bus().is_settled();
     return end;
   }
-
- private:
-  std::optional<sim::SimulatedRefit<RefitConfig>> engine_;
 };
 
 /// Queries of each of several chips in flight: twice as many as it works on at once, so that it has the next ones, and

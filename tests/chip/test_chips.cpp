@@ -11,6 +11,7 @@
 #include <cchip/internal/image/image.hpp>
 #include <cchip/internal/tree/support_tree.hpp>
 #include <cchip/internal/tree/tree.hpp>
+#include <cchip/internal/wire/chip_registers.hpp>
 #include <cchip/machines/chips_machine.hpp>
 #include <cchip/machines/simulated_chip.hpp>
 #include <cchip/program/seed.hpp>
@@ -286,11 +287,16 @@ TEST_CASE("chips: numbers of chips that cannot be", "[system][chips]") {
 
 namespace {
 
+struct RefitCounts {
+  std::size_t lines = 0;    ///< of refitted images
+  std::size_t queries = 0;  ///< that ended while the engine worked
+};
+
 /// The simulated chip, whose refits are compared with the functional model line by line.
 class WithRefitChecked final : public Machine {
  public:
-  explicit WithRefitChecked(std::size_t& lines)
-      : machine_(make_simulated_chip({sim::seed_from_environment(), "", 0, {}, 0, 0, 1})), lines_(lines) {}
+  explicit WithRefitChecked(RefitCounts& counts)
+      : machine_(make_simulated_chip({sim::seed_from_environment(), "", 0, {}, 0, 0, 1})), counts_(counts) {}
 
   std::uint32_t read_register(std::uint32_t offset) override { return machine_->read_register(offset); }
   void write_register(std::uint32_t offset, std::uint32_t value) override { machine_->write_register(offset, value); }
@@ -302,11 +308,13 @@ class WithRefitChecked final : public Machine {
   RefitEnd refit(std::uint32_t base, std::uint32_t lines, std::uint32_t root) override {
     std::vector<Line> expected = image(base, lines);
     CHECK(model::refit_image(expected, {lines, root}).code == RefitCode::ok);
+    const std::uint32_t queries = read_register(chip_registers::counter_queries::offset);
     const RefitEnd end = machine_->refit(base, lines, root);
+    counts_.queries += read_register(chip_registers::counter_queries::offset) - queries;
     CHECK(end.code == RefitCode::ok);
     CHECK(end.clocks > lines);
     CHECK(image(base, lines) == expected);
-    lines_ += lines;
+    counts_.lines += lines;
     return end;
   }
 
@@ -320,15 +328,15 @@ class WithRefitChecked final : public Machine {
   }
 
   std::unique_ptr<Machine> machine_;
-  std::size_t& lines_;
+  RefitCounts& counts_;
 };
 
 }  // namespace
 
 TEST_CASE("simulated chip: the refit engine makes the images of a body that bends", "[system][chips]") {
   std::mt19937_64 random(sim::seed_from_environment());
-  std::size_t lines = 0;
-  const auto chip = make_chip_device(open_chip(std::make_unique<WithRefitChecked>(lines), small_rings()));
+  RefitCounts counts;
+  const auto chip = make_chip_device(open_chip(std::make_unique<WithRefitChecked>(counts), small_rings()));
   const auto cpu = open_cpu_device({1, {}});
   const Object ring(make_torus(1, 0.3, 12, 8, Kind::quad));
   Object body(make_body(5, 0.3, 3));
@@ -348,5 +356,32 @@ TEST_CASE("simulated chip: the refit engine makes the images of a body that bend
     hits += expected.hit ? 1 : 0;
   }
   CHECK(hits > 0);
-  CHECK(lines > 6 * 100);
+  CHECK(counts.lines > 6 * 100);
+  CHECK(counts.queries == 0);  // each was alone
+}
+
+TEST_CASE("simulated chip: queries of other objects go on while the refit engine works", "[system][chips]") {
+  RefitCounts counts;
+  const auto chip = make_chip_device(open_chip(std::make_unique<WithRefitChecked>(counts)));
+  const auto cpu = open_cpu_device({1, {}});
+  Scene scene(24);
+  scene.check(*chip, all);  // their images are in memory now
+  REQUIRE(counts.lines == 0);
+  std::vector<Object> moved;
+  moved.reserve(3);
+  for (const Object& object : {scene.objects[0], scene.objects[1], scene.objects[2]}) {
+    std::vector<Vec3d> vertices = object.mesh().vertices;
+    for (Vec3d& v : vertices) v += 0.05 * Vec3d(v.y() * v.z(), std::sin(v.x()), 0);
+    moved.push_back(object.moved(std::move(vertices)));
+  }
+  for (std::size_t i = 0; i < moved.size(); ++i) {  // each behind others that are in flight when it is refitted
+    CollisionQuery& query = scene.queries[8 * i + 6];
+    query.a = &moved[i];
+    CollisionResult result;
+    cpu->collide(query, all, result);
+    scene.expected[8 * i + 6] = result.contacts;
+  }
+  scene.check(*chip, all);
+  CHECK(counts.lines > 3 * 100);
+  CHECK(counts.queries > 3);
 }

@@ -50,8 +50,8 @@ class ChipDriver final : public QueryPort {
   }
 
   bool refit(std::uint32_t first_line, std::uint32_t lines, std::uint32_t root) override {
+    ring_doorbell();  // the chip answers what it has meanwhile
     const RefitEnd end = machine_->refit(first_line, lines, root);
-    refit_clocks_ += end.clocks;
     // Parts of a write could overwrite what the host stores there next.
     if (end.outstanding)
       throw std::runtime_error("chip driver: memory owes the refit engine an answer; reset engine, chip and bus");
@@ -132,7 +132,7 @@ class ChipDriver final : public QueryPort {
   std::uint64_t clocks() const override {
     const std::uint64_t low = machine_->read_register(regs::counter_clocks::offset);
     const std::uint64_t high = machine_->read_register(regs::counter_clocks::offset + 4);
-    return (high << 32U | low) + refit_clocks_;
+    return high << 32U | low;
   }
 
  private:
@@ -358,7 +358,6 @@ class ChipDriver final : public QueryPort {
   bool doorbell_ = false;                           // queries were written that the chip does not know of
   std::uint64_t in_flight_ = 0;                     // queries
   std::uint64_t quiet_ = 0;                         // proceed() since the last record, or since there was a query
-  std::uint64_t refit_clocks_ = 0;                  // of the refit engine, while the chip waited
   std::unordered_map<std::uint32_t, std::vector<PairRecord>> open_;  // by tag, of queries that have not ended
 };
 

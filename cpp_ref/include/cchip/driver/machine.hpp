@@ -47,8 +47,8 @@ class Machine {
 
   /// True if a cchip_refit_axi works on the same memory.
   virtual bool has_refit() const { return false; }
-  /// Runs it on an image and waits for its end, then, not without a bound, until memory owes no answer. A query that
-  /// uses these lines meanwhile finds anything.
+  /// Runs it on an image and waits for its end, then, not without a bound, until memory owes no answer. The machine
+  /// goes on meanwhile; a query that uses these lines finds anything.
   /// \param base, root  lines of 64 bytes: address of the header / 64; number within the image
   virtual RefitEnd refit(std::uint32_t /*base*/, std::uint32_t /*lines*/, std::uint32_t /*root*/) {
     return {RefitCode::command, 0, 0, 0};

@@ -66,7 +66,7 @@ class QueryPort {
   /// \pre the lines are among those of capabilities(), and no query in flight uses them
   virtual void store(std::uint32_t first_line, const std::vector<Line>& lines) = 0;
   /// Makes the nodes of an image in memory from its leaves, as the model of cchip_refit does; when it returns, the chip
-  /// reads the new ones. Takes what bvh::make_leaves() writes.
+  /// reads the new ones. Takes what bvh::make_leaves() writes. Queries in flight go on meanwhile.
   /// \param root line of the image
   /// \pre as store(); capabilities().refits
   /// \return false: the engine gave up, and the nodes hold anything; nothing that it wrote is still on its way

@@ -58,6 +58,11 @@ class AxiLines : public Agent {
 
   AxiLines(Model& model, std::uint64_t seed) : model_(model), random_(seed) {}
 
+  /// As a bus with a memory behind it.
+  using Memory = AxiLines;
+  Memory& memory() { return *this; }
+  const Memory& memory() const { return *this; }
+
   AxiLinesOptions options;
   /// Of each read and of each write, by its line; by default none.
   std::function<AxiFault(std::uint64_t line)> read_fault = [](std::uint64_t) { return AxiFault::none; };

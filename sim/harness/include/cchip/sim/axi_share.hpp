@@ -42,6 +42,53 @@ struct SharedPins {
   CData m_axi_bresp = 0;
 };
 
+/// The pins of any model's master m_axi_*, for a bus that models of several kinds share.
+template <int DATA_W>
+struct MasterPins {
+  template <class Model>
+  explicit MasterPins(Model& m)
+      : m_axi_arvalid(m.m_axi_arvalid),
+        m_axi_arready(m.m_axi_arready),
+        m_axi_arid(m.m_axi_arid),
+        m_axi_arlen(m.m_axi_arlen),
+        m_axi_arsize(m.m_axi_arsize),
+        m_axi_arburst(m.m_axi_arburst),
+        m_axi_araddr(m.m_axi_araddr),
+        m_axi_rvalid(m.m_axi_rvalid),
+        m_axi_rready(m.m_axi_rready),
+        m_axi_rid(m.m_axi_rid),
+        m_axi_rresp(m.m_axi_rresp),
+        m_axi_rlast(m.m_axi_rlast),
+        m_axi_rdata(m.m_axi_rdata),
+        m_axi_awvalid(m.m_axi_awvalid),
+        m_axi_awready(m.m_axi_awready),
+        m_axi_awid(m.m_axi_awid),
+        m_axi_awlen(m.m_axi_awlen),
+        m_axi_awsize(m.m_axi_awsize),
+        m_axi_awburst(m.m_axi_awburst),
+        m_axi_awaddr(m.m_axi_awaddr),
+        m_axi_wvalid(m.m_axi_wvalid),
+        m_axi_wready(m.m_axi_wready),
+        m_axi_wlast(m.m_axi_wlast),
+        m_axi_wstrb(m.m_axi_wstrb),
+        m_axi_wdata(m.m_axi_wdata),
+        m_axi_bvalid(m.m_axi_bvalid),
+        m_axi_bready(m.m_axi_bready),
+        m_axi_bid(m.m_axi_bid),
+        m_axi_bresp(m.m_axi_bresp) {}
+  CData &m_axi_arvalid, &m_axi_arready, &m_axi_arid, &m_axi_arlen, &m_axi_arsize, &m_axi_arburst;
+  QData& m_axi_araddr;
+  CData &m_axi_rvalid, &m_axi_rready, &m_axi_rid, &m_axi_rresp, &m_axi_rlast;
+  VlWide<DATA_W / 32>& m_axi_rdata;
+  CData &m_axi_awvalid, &m_axi_awready, &m_axi_awid, &m_axi_awlen, &m_axi_awsize, &m_axi_awburst;
+  QData& m_axi_awaddr;
+  CData &m_axi_wvalid, &m_axi_wready, &m_axi_wlast;
+  SData& m_axi_wstrb;
+  VlWide<DATA_W / 32>& m_axi_wdata;
+  CData &m_axi_bvalid, &m_axi_bready, &m_axi_bid, &m_axi_bresp;
+  static_assert(DATA_W == 128, "the type of m_axi_wstrb");
+};
+
 /// One bus for all masters. Each of its five channels carries at most one beat a clock for all of them together,
 /// because the memory behind it is that of a single master; that is where the bandwidth is counted: DATA_W bits a clock
 /// of reads in read_beats(), and as many of writes in write_beats(), out of clocks().
@@ -62,6 +109,7 @@ class AxiShare : public Agent {
       : masters_(std::move(masters)), lines_of_(masters_.size()), memory_(pins_, seed) {}
 
   Memory& memory() { return memory_; }
+  const Memory& memory() const { return memory_; }
   /// Clocks, those in reset left out, and on how many of them a beat was handed over.
   std::uint64_t clocks() const { return clocks_; }
   std::uint64_t read_beats() const { return read_beats_; }

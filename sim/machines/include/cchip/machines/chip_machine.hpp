@@ -78,27 +78,29 @@ std::optional<std::uint32_t> read_word(const Memory& memory, std::uint32_t addre
 /// Host and chip see the same memory at once; memory that nothing wrote reads as 0 for the host, and is a bus error for
 /// the chip. A register takes some clocks, memory takes the host none.
 /// \tparam DATA_W width of the model's data buses, bit
-template <class Model, int DATA_W>
+/// \tparam Bus    what is at the chip's master: an agent with a memory
+template <class Model, int DATA_W, class Bus = AxiLines<Model, DATA_W>>
 class ChipMachine : public Machine {
  public:
-  using Memory = AxiLines<Model, DATA_W>;
+  using Memory = typename Bus::Memory;
 
   explicit ChipMachine(SimulationOptions options)
       : simulation_(std::move(options)),
-        memory_(simulation_.top(), simulation_.seed()),
+        bus_(simulation_.top(), simulation_.seed()),
         registers_(simulation_.top()),
         bitstream_pins_(simulation_.top()),
         bitstreams_(bitstream_pins_) {
     simulation_->cfg_error = 0;
-    bitstreams_.backing = [this](std::uint32_t address) { return read_word(memory_, address); };
-    simulation_.add(memory_);
+    bitstreams_.backing = [this](std::uint32_t address) { return read_word(memory(), address); };
+    simulation_.add(bus_);
     simulation_.add(bitstreams_);
     simulation_.add(registers_);
     reset();
   }
 
   Simulation<Model>& simulation() { return simulation_; }
-  Memory& memory() { return memory_; }
+  Bus& bus() { return bus_; }
+  Memory& memory() { return bus_.memory(); }
   /// The port for bitstreams, which reads the same memory.
   AxiMemory<BitstreamPins<Model>>& bitstreams() { return bitstreams_; }
   /// Chip and bus.
@@ -114,15 +116,15 @@ class ChipMachine : public Machine {
       throw std::runtime_error("chip: register " + std::to_string(offset) + " refuses a write");
   }
 
-  void write_memory(std::uint64_t address, const Bytes& bytes) override { write_bytes(memory_, address, bytes); }
-  Bytes read_memory(std::uint64_t address, std::size_t size) override { return read_bytes(memory_, address, size); }
+  void write_memory(std::uint64_t address, const Bytes& bytes) override { write_bytes(memory(), address, bytes); }
+  Bytes read_memory(std::uint64_t address, std::size_t size) override { return read_bytes(memory(), address, size); }
 
   bool interrupt() override { return simulation_->irq != 0; }
   void proceed() override { simulation_.step(); }
 
  private:
   Simulation<Model> simulation_;
-  Memory memory_;
+  Bus bus_;
   AxiLiteMaster<Model> registers_;
   BitstreamPins<Model> bitstream_pins_;
   AxiMemory<BitstreamPins<Model>> bitstreams_;
