@@ -330,10 +330,11 @@ def synthesise(row, options):
         f"synth_ecp5 {options.synth}{row.synth} -top fpga_harness\n"
         "tee -q -o {}/stat.json stat -json\n"
         "setattr -unset keep_hierarchy */t:*\nsetattr -mod -unset keep_hierarchy *\nflatten\nopt_clean\n"
-        # without the places in the sources a new comment does not mean a new place and route
         "setattr -unset src *\nsetattr -mod -unset src *\n"
         "write_json {}/netlist.json\n")
-    return yosys(f"{row.name}.synth", script, [text, made], "netlist.json", made)
+    # a new comment does not mean a new synthesis, nor, without the places in the sources, a new place and route
+    bare = {name: re.sub(r"\s*//.*", "", lines) for name, lines in text.items()}
+    return yosys(f"{row.name}.synth", script, [bare, made], "netlist.json", made)
 
 
 # command of Yosys, the cells that each column counts, and macros

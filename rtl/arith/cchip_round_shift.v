@@ -7,7 +7,6 @@
 //   throughput   one value per clock, never stalls
 //   numbers      d and q two's complement, q modulo 2^Q_W
 //   lost         d is no multiple of 2^(BASE + s): q is not exact
-//   cuts         every path
 //   reset        none (data only)
 //   numbers      A value halfway between two others becomes the greater one.
 //   inside       Two barrel shifters that keep one bit below the point, and a flag for what falls

@@ -7,7 +7,6 @@
 //   throughput   a child of A on every clock
 //   row          {best: key, number of B's child; of each child of B: strong, leaves, waiting};
 //                as model::sort_children names them
-//   cuts         every path
 //   reset        none
 //   timing       A child of A on every clock. m_a comes one clock, m_row 7 clocks after s_a.
 //   numbers      Planes as cchip_bv_compare takes them. The best is the child pair that waits with

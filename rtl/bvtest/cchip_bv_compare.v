@@ -6,7 +6,6 @@
 //   numbers      planes in half steps with 1 fraction bit, as cchip_bv_lane_a and _b give them
 //   latency      separated 2 clocks, key 6 clocks after the planes
 //   throughput   a pair on every clock
-//   cuts         every path
 //   reset        none
 // Bit for bit model::test_boxes.
 //   about        Whether a child of A and a child of B are separated, and if not by how little they

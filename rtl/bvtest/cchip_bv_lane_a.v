@@ -9,7 +9,6 @@
 //                in diagonals, with 6 fraction bits, of which 1 leaves
 //   latency      9 clocks from child; the other inputs come as many clocks after it as they say
 //   throughput   a child on every clock
-//   cuts         every path
 //   reset        none
 // Bit for bit model::planes_of_a (docs/hardware/image.md, "Box test").
 module cchip_bv_lane_a (

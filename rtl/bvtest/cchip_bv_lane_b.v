@@ -7,7 +7,6 @@
 //   numbers      half steps of the grid, rounded down, with 2 fraction bits, of which 1 leaves
 //   latency      5 clocks from child
 //   throughput   a child on every clock
-//   cuts         every path
 //   reset        none
 // Bit for bit model::planes_of_b (docs/hardware/image.md, "Box test").
 //   numbers      The widths hold every sum. Cuts count up to scale 2.

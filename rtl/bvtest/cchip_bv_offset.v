@@ -9,7 +9,6 @@
 //   latency      5 clocks from start to the scales, 9 to the slack, 12 to offset, is_far, is_near;
 //                each stays until that of the next node pair comes
 //   throughput   a node pair every third clock; origins stay for the three clocks from start on
-//   cuts         every path
 //   reset        none: a start that is not used does no harm
 // Bit for bit model::grid_of (docs/hardware/image.md, "Box test").
 //   timing       Clocks count from start. Origins stay for the three clocks from start on, in which

@@ -8,7 +8,6 @@
 //   throughput   a pose every 13 clocks; each port reads on every clock
 //   memory       block RAM: the rows of M and t one after the other for cchip_bv_offset, and M and
 //                the 13 directions side by side for cchip_bv_lane_a
-//   cuts         every path
 //   reset        drops the pose in progress, keeps those in memory
 //   timing       A pose every 13 clocks; m_pose_valid 21 clocks after it was taken. What is read
 //                while it is written is any value.

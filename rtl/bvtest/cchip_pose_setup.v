@@ -8,7 +8,6 @@
 //                which s_ready is 1 again; 7 clocks to the first direction
 //   throughput   a direction on every clock, a query every 13 clocks
 //   numbers      |m| up to 9 fraction bits; b - c and c down to 6 and 7, at most 127
-//   cuts         every path
 //   reset        drops the query in flight
 // Bit for bit model::set_up (docs/hardware/image.md).
 //   about        M rounded, and how each direction of B splits into directions of A.

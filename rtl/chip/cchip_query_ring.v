@@ -14,7 +14,6 @@
 //   failure      a line that could not be read is not handed on, and none after it: failed = 1
 //                until reset, consumer names the line. What was handed on before goes its way
 //   memory       one of AHEAD lines, a beat wide; a query is gathered from it in a register
-//   cuts         every path
 //   reset        nothing is in flight: reads from before must not be answered
 module cchip_query_ring #(
     // slots of its client of cchip_axi_read; legal: 2, 4, 8, 16, 32, at least AHEAD

@@ -14,7 +14,6 @@
 //   latency      2 clocks from s_valid to m_valid
 //   failure      a write with another code than OK, or any that follows it, is not counted in
 //                `producer`: failed = 1 until reset, and no further record is taken
-//   cuts         every path
 //   reset        the ring is empty, at its beginning; writes from before must not be answered
 module cchip_record_ring #(
     parameter integer DATA_W = 128  // width of the data bus of memory (bit); legal: 128, 256, 512

@@ -7,7 +7,6 @@
 //   silence      if memory never answers, resetting stays 1: only rst, with a reset of the bus,
 //                ends that
 //   latency      1 clock from request to resetting; done is 1 on the first clock after it
-//   cuts         every path: each output is a flip-flop
 //   reset        ends a soft reset, without done
 //   rules        The bus masters must not be reset: reads that they hold in their queues go to
 //                memory, and their answers reach clients that are in reset and drop them. If memory

@@ -7,7 +7,6 @@
 //                s_clk
 //   throughput   one beat per clock of the slower side, DEPTH >= 4 + 2 STAGES at equal clocks
 //   capacity     DEPTH + 1 beats
-//   cuts         valid, ready and data: every output is a flip-flop
 //   crossing     Gray pointers and the state of each side, through cchip_synchroniser; the memory
 //                is read on m_clk at words that have been written since STAGES clocks or more
 //   reset        either side may be reset, alone or with the other, for one clock or more: both

@@ -9,7 +9,6 @@
 //   capacity     DEPTH + 1 beats of each channel. It counts no transactions: the master bounds them
 //   order        within a channel, kept. Between channels there is none, as in AXI4: a response
 //                cannot overtake the beats that cause it, since these have passed before it is made
-//   cuts         every path: all outputs are flip-flops
 //   reset        either side for one clock or more, alone or with the other, see cchip_async_fifo:
 //                what is inside is lost. The bridge does not end what memory or the master still
 //                awaits, so reset both sides unless nothing is outstanding

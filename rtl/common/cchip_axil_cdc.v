@@ -9,7 +9,6 @@
 //                response of a write before a read that depends on it
 //   interrupt    a phase of 0 of m_irq, be it one clock, is a phase of 0 of s_irq. s_irq may still
 //                be 1 for some clocks after the response of the write that cleared its cause
-//   cuts         every path: all outputs are flip-flops
 //   reset        either side for one clock or more, alone or with the other, see cchip_async_fifo:
 //                accesses inside are lost and get no response, so reset both sides unless none is
 //                in flight

@@ -19,7 +19,6 @@
 //                the old word, with the macro CCHIP_POISON random bits
 //   device       rtl/cchip_ecp5.f takes the block itself, vendor/ecp5/cchip_block_ram.v, because
 //                Yosys does not pack the register
-//   cuts         every path
 //   reset        none; words never written hold any value
 module cchip_block_ram #(
     parameter integer WIDTH = 8,                        // width of a word (bit); legal: >= 1

@@ -4,7 +4,6 @@
 // cchip_count: number of things inside something that has room for LIMIT of them, and whether there
 // are some and whether there is room, each as a flip-flop.
 //   latency      1 clock from up or down to count, some and room
-//   cuts         every path: each output is a flip-flop
 //   reset        count 0, some 0, room 1
 //   rules        up only while room = 1, down only while some = 1; both on one clock leave the
 //                count as it is

@@ -11,7 +11,6 @@
 //                `read_high` answers, 1 clock later, with the high word of the counter of 64 bits
 //                that was read last; it may come on the clock of `ack`.
 //   throughput   an event of every counter on every clock
-//   cuts         every path: each output is a flip-flop
 //   reset        rst or clear: all counters 0. The RAM is not reset: in the first 16 clocks after
 //                it the walk writes each word without adding what it held.
 module cchip_counter_file #(

@@ -9,7 +9,6 @@
 //                that clock: any value; in simulation the old word, with the macro CCHIP_POISON
 //                random bits
 //   device       rtl/cchip_ecp5.f takes the block itself, vendor/ecp5/cchip_dual_ram.v
-//   cuts         every path
 //   reset        none; words never written hold any value
 //   timing       The outputs are flip-flops. No reset: words are undefined until written.
 //   why          A block of any FPGA has two ports, each with its own address; a memory with two

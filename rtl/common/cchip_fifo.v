@@ -5,7 +5,6 @@
 //   latency      2 clocks from the push to m_valid of an empty queue
 //   throughput   one beat per clock, DEPTH >= 3
 //   capacity     DEPTH beats
-//   cuts         valid, ready and data: every output is a flip-flop
 //   reset        empty; s_ready = 0 while rst is 1
 module cchip_fifo #(
     parameter integer WIDTH = 8,      // width of the payload (bit); legal: >= 1

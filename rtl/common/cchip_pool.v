@@ -5,7 +5,6 @@
 // that came back first is lent first, so that each is used again as late as possible.
 //   latency      2 clocks from back_valid to m_valid if no other number is left
 //   throughput   one number lent and one taken back per clock, COUNT >= 3
-//   cuts         every path: each output is a flip-flop
 //   reset        all numbers are free; the first is lent from the 3rd clock on, then one per clock
 //   rules        back_valid only with a number that is lent
 //   timing       A number that comes back to an empty pool is offered 2 clocks later. After reset

@@ -5,7 +5,6 @@
 //   latency      1 clock
 //   throughput   one beat per clock, also while m_ready toggles
 //   capacity     2 beats
-//   cuts         every path: s_ready, m_valid and m_data are flip-flops
 //   reset        empties the buffer; s_ready and m_valid are 0 while rst is 1; a beat of the clock
 //                on which rst rises is lost
 module cchip_skid_buffer #(

@@ -13,7 +13,6 @@
 //   latency      expired is 1 on the clock behind the one on which elapsed has reached the limit,
 //                unless that one restarts; it stays 1 until then. A lowered limit that has passed
 //                already expires 2 clocks after its change
-//   cuts         every path: each output is a flip-flop
 //   reset        restart = 1 for a clock. elapsed wraps after 2^32 clocks, which no limit reaches
 module cchip_timeout #(
     parameter integer DEFAULT = 4096  // the limit that 0 stands for (clock); legal: 1..2^31 - 1

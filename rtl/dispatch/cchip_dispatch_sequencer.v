@@ -14,7 +14,6 @@
 //                the next clocks m_vertex = 1, 2 (and 3)
 //   data         what m_vertex reads arrives 2 clocks later, together with m_valid, m_first and
 //                m_last; m_kind and m_taker are those of the pair until the next m_first
-//   cuts         every path: each output comes from flip-flops
 //   reset        nothing is dispatched
 //   about        It knows nothing of pairs but their kind, and nothing of slots but that they have
 //                room and serve a kind.

@@ -14,7 +14,6 @@
 //   credit       no ready runs back from a slot: at most CREDIT of its pairs lie between dispatch
 //                and answer
 //   fair         kinds are served in turn, and so are slots and answers
-//   cuts         every path: each output comes from flip-flops
 //   reset        no pair inside any slot, no answer
 //   timing       A lone pair: 6 clocks from some to its first vertex, 6 from a result to its
 //                answer.

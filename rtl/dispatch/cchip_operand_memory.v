@@ -15,7 +15,6 @@
 //   collision    the pair at m_place has left its queue when its vertex 0 is read, and its place
 //                may be the next one. A new pair is accepted only behind a clock with m_vertex = 0,
 //                so it never comes before the last vertex of the old one is read
-//   cuts         every path: outputs are flip-flops
 //   reset        no pair is accepted; what was written stays
 module cchip_operand_memory #(
     parameter integer COORD_W = 16,  // width of a signed coordinate (bit); legal: 4..20

@@ -15,7 +15,6 @@
 //                inside. Answers that wait for the receiver do not matter
 //   decouple     after SETTLE_CLOCKS the pairs inside are counted in `lost` and answered as open,
 //                one per clock; then decoupled rises. It falls one clock after decouple
-//   cuts         every path: each output is a flip-flop
 //   reset        no pair inside, no answer; open for pairs after CREDIT + 2 clocks
 //   about        The pairs inside one slot: how many there may be, what their numbers mean, and
 //                how each of them ends.

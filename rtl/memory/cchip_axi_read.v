@@ -28,7 +28,6 @@
 //                read channel, at most every other one
 //   bursts       one line each, aligned, so never across 4 KiB; the top says arsize (whole beats),
 //                arburst (INCR), arcache and arprot
-//   cuts         every path: each output is a flip-flop
 //   reset        must reset the bus too: after it no beat of an earlier read may come; no request
 //                on the first clock after it
 module cchip_axi_read #(

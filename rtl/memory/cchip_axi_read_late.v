@@ -7,7 +7,6 @@
 //                One ID is looked at per clock, none while an expired read waits to be accepted
 //   limit        1..2^32 - 1 clocks; 0 means CCHIP_MEMORY_LIMIT_DEFAULT. It may change on any clock
 //                (cchip_timeout)
-//   cuts         every path: each output is a flip-flop
 //   reset        no read has expired
 //   why          Two bits for each read instead of an age of 32 bits. A read expires up to a limit
 //                later than it could be; that is the price.

@@ -27,7 +27,6 @@
 //   attributes   the top says awsize (whole beats), awburst (INCR), awcache and awprot
 //   latency      5 clocks from s_valid to awvalid, 7 to wvalid, 2 from a response to m_valid
 //   throughput   a beat in 2 clocks, an address on every clock
-//   cuts         every path: each output is a flip-flop
 //   reset        must reset the bus too: after it no response to an earlier write may come
 module cchip_axi_write #(
     parameter integer CLIENTS = 2,       // clients; legal: 1..4

@@ -10,7 +10,6 @@
 //   latency      4 clocks from s_valid of an idle client to m_write_valid; s_ready follows s_valid
 //                by a clock
 //   throughput   a beat per clock
-//   cuts         every path: each output is a flip-flop
 //   reset        no write
 //   rules        For the clients those of cchip_axi_write. Beats leave in the order of their
 //                writes, possibly before m_write_valid.

@@ -28,7 +28,6 @@
 //   silence      a slot whose read ended with CCHIP_READ_TIMEOUT or CCHIP_READ_OWED is out of use
 //                while its response is outstanding. With all of them out of use a request whose
 //                line is not there is answered with CCHIP_READ_OWED
-//   cuts         every path: each output is a flip-flop
 //   reset        invalidates every line; takes 2^SET_W clocks, requests wait
 module cchip_cache #(
     parameter integer CACHE_KB = 128,  // size of the data (KiB); legal: 1, 2, 4 ... 1024

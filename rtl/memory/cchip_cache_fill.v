@@ -15,7 +15,6 @@
 //                lent again, within MISSES + 3 clocks, when nothing is outstanding under its ID
 //   latency      2 clocks from the last beat to fill_valid, while free is 1
 //   throughput   a line every second clock into the frames, every fourth if one waits for each
-//   cuts         every path
 //   reset        every slot is free after MISSES clocks; memory must not answer reads from before
 module cchip_cache_fill #(
     parameter integer MISSES = 32,   // slots (line); legal: 2, 4, 8, 16, 32

@@ -7,7 +7,6 @@
 //                at that time have been answered, their requests served and 7 clocks have passed:
 //                answers from then on are of data that memory held after the command
 //   latency      9 clocks for each set of the range, at most 2^SET_W of them
-//   cuts         every path
 //   reset        clears the entries, one set per clock: running = 0 meanwhile
 //   why          A set is looked up by a port as a request is, so the walk needs no port of its own
 //                into the entries. When it is over, no answer carries data from before the command:

@@ -10,7 +10,6 @@
 //                data; each beat that waits for a verdict adds CCHIP_BEAT_LATENCY(SUBSTAGES)
 //   throughput   one axis per clock
 //   in flight    at most CONTEXTS pairs between the handshakes of s_pair and m_result
-//   cuts         every path: each output, s_pair_ready included, is a flip-flop
 //   reset        no pair accepted before is ever answered; s_pair_ready is 0 while rst is 1
 module cchip_primtest #(
     parameter integer COORD_W = 16,  // width of a signed coordinate (bit); legal: 4..20

@@ -9,7 +9,6 @@
 //                CCHIP_POINT_LATENCY(COORD_W) clocks, for any data
 //   throughput   one axis per clock, one pair per 7 clocks
 //   in flight    at most CONTEXTS pairs between the handshakes of s_pair and m_result
-//   cuts         every path: each output, s_pair_ready included, is a flip-flop
 //   reset        no pair accepted before is ever answered; s_pair_ready is 0 while rst is 1
 // s_pair_a: centre in bits [0 +: 3*COORD_W], x lowest; radius, unsigned, in
 // [3*COORD_W +: COORD_W]; the rest is ignored. s_pair_b: triangle; vertex i in bits

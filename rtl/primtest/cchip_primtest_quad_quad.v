@@ -10,7 +10,6 @@
 //                1..14 up to 16 more for a hit that only its depth can make definite
 //                (docs/develop/architecture.md, The depth rule)
 //   in flight    at most CONTEXTS pairs between the handshakes of s_pair and m_result
-//   cuts         every path: each output, s_pair_ready included, is a flip-flop
 //   reset        no pair accepted before is ever answered; s_pair_ready is 0 while rst is 1
 // s_pair_a: quad, s_pair_b: quad; vertex i in bits [3*COORD_W*i +: 3*COORD_W], x lowest. Quads are
 // canonical: planar ones in weakly convex cyclic order, or warped, or all vertices on one line.

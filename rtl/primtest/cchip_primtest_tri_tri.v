@@ -10,7 +10,6 @@
 //                1..14 up to 9 more for a hit that only its depth can make definite
 //                (docs/develop/architecture.md, The depth rule)
 //   in flight    at most CONTEXTS pairs between the handshakes of s_pair and m_result
-//   cuts         every path: each output, s_pair_ready included, is a flip-flop
 //   reset        no pair accepted before is ever answered; s_pair_ready is 0 while rst is 1
 // s_pair_a: triangle, s_pair_b: triangle; vertex i in bits [3*COORD_W*i +: 3*COORD_W], x lowest.
 // Vertices 0..2 are used. s_pair_mode: CCHIP_MODE_EXHAUSTIVE or _DIRECTED; others: axis class

@@ -5,7 +5,6 @@
 // them.
 //   latency      3 clocks from the last word to done; payload_* stay until the next header
 //   throughput   one word per clock
-//   cuts         every path: each output comes from flip-flops
 //   reset        clear must be 1 for 2 clocks at least between two headers; slot, module_id and
 //                size must not change from then to done
 module cchip_bitstream_header #(

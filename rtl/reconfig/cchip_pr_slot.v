@@ -6,7 +6,6 @@
 // are records VERTEX and SLOT_RESULT; what is inside, the dispatcher knows (cchip_slot_ledger).
 //   latency      that of the module + 2 clocks
 //   throughput   that of the module
-//   cuts         every path: every output is a flip-flop
 //   decouple     see cchip_pr_decoupler
 //   hold_reset   level, reset of the module one clock later; roc_start: pulse, a reset of
 //                ROC_CYCLES clocks; roc_busy is 1 from the next clock to the last clock of that

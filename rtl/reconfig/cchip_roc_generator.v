@@ -7,7 +7,6 @@
 //                else 0: a pulse gives a reset of exactly CYCLES clocks; a level gives one that
 //                begins one clock later and is CYCLES - 1 clocks longer
 //   latency      1 clock
-//   cuts         every path: roc is a flip-flop
 //   reset        rst counts as a configuration; so does power-up: roc is 1 for CYCLES clocks then
 //   about        Reset on configuration, listing 3.3 and figure 8 of the paper: a module that has
 //                no reset of its own after a configuration, or is closed source, gets one of CYCLES

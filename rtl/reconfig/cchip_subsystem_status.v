@@ -4,7 +4,6 @@
 // cchip_subsystem_status: what the registers of the subsystem show of swaps: the last report, its
 // event, the sum of the pairs that were lost.
 //   latency      1 clock from a report to every output
-//   cuts         every path: each output is a flip-flop
 //   reset        all 0; clear: lost 0, a report on its clock is not in lost
 //   numbers      lost wraps at 2^32. cchip_counter_file has what is counted one by one.
 //   why          A report may bring up to 65,535 pairs, so their sum has an adder of its own.

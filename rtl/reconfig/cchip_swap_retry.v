@@ -11,7 +11,6 @@
 //   hopeless     entries that rest after CCHIP_RETRY_DOUBLINGS failures in a row or more: no one
 //                should wait for them until they are tried again
 //   latency      1 clock from the report to resting
-//   cuts         every path: each output comes from flip-flops
 //   reset        nothing rests, level 0
 //   timing       resting rises on the clock after the report and is 1 for exactly
 //                CCHIP_RETRY_CLOCKS << level clocks, counted from the latest failure. All outputs

@@ -22,7 +22,6 @@
 //                after the change, a higher one, or 0, gives more time
 //   clocks       cfg_error may come from any clock: it passes two flip-flops. Everything else
 //                belongs to clk.
-//   cuts         every path: each output is a flip-flop
 //   reset        no swap, slots active, except one whose transfer had begun and not ended well
 //                (cchip_swap_signals)
 module cchip_swap_sequencer #(

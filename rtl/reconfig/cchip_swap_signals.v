@@ -10,7 +10,6 @@
 //                it stays stopped, decoupled and in reset
 //   latency      1 clock
 //   throughput   one step per clock
-//   cuts         every path: each output is a flip-flop
 //   reset        slots active, except one whose transfer had begun and not ended well: half_q
 //                outlives rst and keeps it stopped, decoupled and in reset until a good transfer.
 //                Its value at power-up is an initial value, because no reset can tell a power-up,

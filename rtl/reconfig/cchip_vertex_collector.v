@@ -9,7 +9,6 @@
 //                comes as three vertices is complete as a quad: V3 = V2
 //   first        begins a pair in any state; vertices before the first `first`, and behind
 //                `last`, are ignored
-//   cuts         every path: each output is a flip-flop
 //   reset        no pair begun. m_pair_valid has no ready: the sender's credit says that there is
 //                room
 //   about        The vertices of a pair, one of A and one of B per clock, become a request for

@@ -10,7 +10,6 @@
 //                otherwise pairs that start and pairs that continue alternate
 //   latency      s_pair to its first beat 4 clocks; verdict to m_result CCHIP_PROGRAMME_LATENCY
 //                clocks, to the next beat of its pair 3 more
-//   cuts         every path
 //   reset        empties everything; no earlier pair is ever answered
 // A pair gets a context: its slot in the operand memory. The owner stores the operands of s_pair
 // under m_load_context; each beat's operands reach the pipeline CCHIP_RAM_LATENCY clocks after the

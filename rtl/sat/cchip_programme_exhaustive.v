@@ -5,7 +5,6 @@
 // on consecutive clocks, so one set of registers serves all pairs.
 //   latency      1 clock, then logic: m_* belong to the verdict that entered one clock before
 //   throughput   one verdict per clock
-//   cuts         every path from an input
 //   reset        m_valid; what is remembered is overwritten by the first verdicts of the next pair
 //   about        Part of cchip_axis_programme.
 //   timing       Latency 1 clock, then two levels of logic. The verdicts of a pair come on

@@ -5,7 +5,6 @@
 // separates (the rules are in the header of cchip_axis_programme).
 //   latency      1 clock, then logic: the outputs are combinational behind the input registers
 //   throughput   one verdict per clock
-//   cuts         every path from an input
 //   reset        none: outputs mean something one clock after a verdict on a normal only
 // The verdict on nA gives m_info, which the pair's state carries to nB. The verdict on nB gives
 // m_plan. For an EXHAUSTIVE pair, nB must follow nA at once.

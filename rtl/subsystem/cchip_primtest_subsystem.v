@@ -12,7 +12,6 @@
 //   order        answers in any order; tag and kind of the pair come back with each exactly once. A
 //                pair that a swap by force gave up, or that no slot can test, is answered as open:
 //                hit 1, grid 1, definite 0, axis class CCHIP_AXIS_ILLEGAL
-//   cuts         every path: each output is a flip-flop
 //   reset        drops all pairs and clears registers; a slot whose rewriting was cut off stays
 //                decoupled until a good swap
 //   errors       codes CCHIP_SWAP_* in the register report, interrupt (0 for a clock after a write

@@ -5,7 +5,6 @@
 //   latency      14 clocks from s_origin to m_origin; t and o_B are read on the clock before
 //                s_origin and on the two from it on, s_moved 6 clocks behind s_origin
 //   throughput   an origin every 4 clocks
-//   cuts         every path
 //   reset        no origin
 //   inside       The three rows pass one shifter and one cchip_round_shift, one after the other: an
 //                origin has as many clocks as a pair has vertices.

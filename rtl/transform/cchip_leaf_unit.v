@@ -8,7 +8,6 @@
 //                because rows of |M| add up to less than 2; of B: the step of its leaf
 //   latency      1 clock to m_shift, 4 to m_cut_a, m_cut_b and m_fine, OUT to the errors and m_open
 //   throughput   a leaf pair per clock
-//   cuts         every path
 //   reset        none: values count only with the vertex they belong to
 module cchip_leaf_unit #(
     // from the last pass of a vertex to its output (clock); legal: >= 10

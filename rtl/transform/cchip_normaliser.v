@@ -13,7 +13,6 @@
 //   eta          0: nothing was rounded; 15 for an open pair; else
 //                min(15, 1 + ceil(max(error of A, error of B) / 2^n)), where an error is s_error_*
 //                and 1 for each flag of s_lost that a vertex of the pair has
-//   cuts         every path: each output is a flip-flop
 //   reset        vertices inside are dropped
 // Bit for bit model::normalise.
 module cchip_normaliser #(

@@ -13,7 +13,6 @@
 //   s_valid      until s_ready, nothing of s_* changes; a leaf pair begins while room = 1
 //   numbers      units of the leaf pair, two's complement (docs/hardware/image.md)
 //   multipliers  36 blocks of 18x18 bit, with PASSES = 2 half as many
-//   cuts         every path: each output is a flip-flop
 //   reset        what is inside is dropped
 // Bit for bit model::move_leaves.
 module cchip_vertex_transform #(

@@ -13,7 +13,6 @@
 //   errors       end one query with a code, and leave the others alone
 //   bound        every wait has one: a read by the limit of cchip_axi_read, a query by step_limit;
 //                results and the receiver of answers are waited for
-//   cuts         every path: each output is a flip-flop
 //   reset        drops queries and lines; takes 2^SET_W clocks of the cache. It acts a clock
 //                later: hold rst for 2 clocks or more
 module cchip_broad_phase #(

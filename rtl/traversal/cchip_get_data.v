@@ -21,7 +21,6 @@
 //                m_leaf_valid
 //   throughput   a request per clock, a node pair every third clock, a leaf pair every eighth
 //   credit       a place is used again only after m_leaf_left or the verdict
-//   cuts         every path: each output is a flip-flop
 //   reset        drops all pairs; no line of an earlier request may come
 module cchip_get_data #(
     parameter integer QUERIES = 16,  // queries at once (query); legal: 2, 4, 8, 16

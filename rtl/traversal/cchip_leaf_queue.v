@@ -9,7 +9,6 @@
 //   latency      5 clocks from s_valid to m_valid
 //   throughput   a pair every third clock, a clock more between entries
 //   capacity     DEPTH entries; the sender counts them: m_room = 1 when one has left
-//   cuts         every path: each output is a flip-flop
 //   reset        empty, all credit back
 //   timing       5 clocks from s_valid of an empty queue to m_valid. m_valid stays until m_ready. A
 //                pair is judged when it is next, on the clock before it is offered: one whose query

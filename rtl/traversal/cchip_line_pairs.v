@@ -14,7 +14,6 @@
 //                read_codes 2 clocks after read_place, leaf_lines and leaf_codes after leaf_place
 //   throughput   a line per port and two clocks
 //   credit       a place is used again only after its pair has left its queue
-//   cuts         every path: each output is a flip-flop
 //   reset        no earlier line may come; the queues are empty
 //   rules        Each line comes once.
 //   inside       Of each place one bit, which every line inverts: a second line finds it 1. For

@@ -13,7 +13,6 @@
 //                clock
 //   latency      4 clocks from s_valid until lookup finds it; 1 clock from lookup to lookup_nodes
 //   throughput   a pair every second clock
-//   cuts         every path: each output is a flip-flop
 //   reset        nothing inside; what is kept is unknown until it has been written
 //   rules        A line of A could not be read (MEMORY); of two headers one has another magic or
 //                version (BAD_DESCRIPTOR); what is wrong with A's line; what is wrong with B's.

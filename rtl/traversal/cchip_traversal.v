@@ -17,7 +17,6 @@
 //   rules        fewer than 1,900 leaf pairs are without a result behind cchip_get_data
 //   latency      14 or 15 clocks from s_verdict_valid to m_valid
 //   throughput   an event every second clock, of one query one in 8 clocks
-//   cuts         every path: each output depends on flip-flops only
 //   reset        drops all queries; takes 4 QUERIES clocks, events wait
 module cchip_traversal #(
     parameter integer QUERIES = 16,     // queries at once (query); legal: 2, 4, 8, 16

@@ -11,7 +11,6 @@
 //                pairs_each on its third. 0 counts as 1
 //   latency      3 clocks; m_started comes after 1
 //   throughput   an event per clock
-//   cuts         every path: each output is a flip-flop
 //   reset        drops the events inside. Without an event all outputs that say what happens
 //                are 0
 //   parameters   cchip_traversal checks them.

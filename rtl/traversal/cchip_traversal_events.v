@@ -16,7 +16,6 @@
 //   latency      2 or 3 clocks from what enters to m_valid; a verdict is a clock in its queue,
 //                another one before it
 //   throughput   an event every second clock
-//   cuts         every path: each output depends on flip-flops only
 //   reset        drops all events; all places and all room are free
 module cchip_traversal_events #(
     parameter integer QUERIES = 16,     // queries at once (query); legal: 2, 4, 8, 16

@@ -8,7 +8,6 @@
 //                back with s_back_valid
 //   latency      1 clock from s_goes to m_valid
 //   throughput   a pair per clock
-//   cuts         every path: each output depends on flip-flops only
 //   reset        the queue is empty, every place is free
 //   inside       cchip_leaf_queue, a cchip_pool of places for leaf pairs, and one output register.
 module cchip_traversal_fetch #(

@@ -5,7 +5,6 @@
 // worked out on the clocks on which its query is read: how many leaf pairs, and what waits.
 //   latency      4 clocks
 //   throughput   a verdict per clock
-//   cuts         every path: each output is a flip-flop
 //   reset        none: the values count only with the event they belong to
 module cchip_verdict_view (
     input  wire                            clk,            // clock, rising edge

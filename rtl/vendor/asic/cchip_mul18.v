@@ -8,7 +8,6 @@
 //   latency      CCHIP_MUL18_LATENCY clocks, 2 to 4: registers at the input and behind the adder;
 //                from 3 on behind the tree, with 4 also behind its third level
 //   throughput, numbers, reset   those of arith/cchip_mul18.v
-//   cuts         every path
 module cchip_mul18 #(
     // 1: a, b and p are signed; 0: they are not
     parameter integer SIGNED = 1

@@ -8,7 +8,6 @@
 //                16 i, 32 i; of 18 and 36 bits the lowest bits of port A's address enable the bytes
 //   latency      q belongs to the address of 2 clocks before
 //   collision    a word that is read on the clock on which it is written: any value
-//   cuts         every path
 //   reset        none
 module cchip_dp16kd #(
     parameter integer WIDTH_A = 18,
