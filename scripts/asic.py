@@ -643,14 +643,15 @@ def flat(row, path):
     script = (f"read_liberty -lib {here}/cells.lib\nread_verilog {here}/netlist.v\nhierarchy -top {row.top}\nflatten\n"
               "opt_clean -purge\nsplitnets -ports -format __\nopt_clean -purge\nrename -hide w:* c:*\n"
               "rename -enumerate\n"
-              f"write_blif -gates -buf {buffer} {pin} {lib.cells[buffer].output} {{}}/design.blif\n")
+              # the library has no cell for a constant: they are ports
+              "write_blif -gates -true - one_ -false - zero_ -undef - zero_ "
+              f"-buf {buffer} {pin} {lib.cells[buffer].output} {{}}/design.blif\n")
     made = run(f"{row.name}.flat", "yosys", {"run.ys": script}, folder.name, "design.blif")
     text = (made / "design.blif").read_text()
     gates = [line for line in text.splitlines() if line.startswith(".gate")]
-    if constant := [line for line in gates if "=$" in line]:
-        raise fpga.ToolError(f"{len(constant)} cells with a constant, which has no cell: {constant[0]}")
     head = [line for line in text.splitlines() if line.startswith((".model", ".inputs", ".outputs"))]
-    return "\n".join([*head, *gates, ".end"]) + "\n", len(gates)
+    ports = [f".inputs {name}" for name in ("zero_", "one_") if any(f"={name}" in line for line in gates)]
+    return "\n".join([*head, *ports, *gates, ".end"]) + "\n", len(gates)
 
 
 def lay_out(row, options):

@@ -366,6 +366,9 @@ class Leaf(unittest.TestCase):
         self.assertTrue(2000 < figures["nand2"] < 5000, figures)
         self.assertLess(figures["mw"]["0.1"], figures["mw"]["0.5"])
         folder, _ = asic.mapped(row, asic.LIBERTY)
+        blif, cells = asic.flat(row, asic.LIBERTY)  # for place and route
+        self.assertEqual(cells, asic.instances((folder / "netlist.v").read_text()).total())
+        self.assertEqual(blif.count("CLK=clk"), figures["ff"])
         (folder / "bench.v").write_text(BENCH)
         models = pathlib.Path(asic.LIBERTY).with_suffix(".v")
         self.assertEqual(run(tool("iverilog"), "-g2005", "-s", "bench", "-o", folder / "bench.vvp", folder / "bench.v",
