@@ -594,7 +594,9 @@ def stopped(log, minutes, limit):
     if not limit or minutes < 0.99 * limit:
         return ""
     left = re.findall(r"^Nets remaining: (\d+)", log, re.M)
-    return f"not done after {minutes:.0f} minutes" + (f", {left[-1]} nets to go" if left else "")
+    passes = re.search(r"( +\d+)+\s*\Z", log)  # graywolf anneals in 150
+    where = f", {left[-1]} nets to go" if left else f", in pass {passes[0].split()[-1]} of 150" if passes else ""
+    return f"not done after {minutes:.0f} minutes{where}"
 
 
 class Stopped(Exception):

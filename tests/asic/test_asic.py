@@ -292,6 +292,8 @@ class Wires(unittest.TestCase):
         log = "Nets remaining: 200\nNets remaining: 30\n"
         self.assertEqual(asic.stopped(log, 30.0, 30), "not done after 30 minutes, 30 nets to go")
         self.assertEqual(asic.stopped("", 30.0, 30), "not done after 30 minutes")
+        passes = "Yale University\n  0 \n  1   2  15 \n 16  17 "
+        self.assertEqual(asic.stopped(passes, 30.0, 30), "not done after 30 minutes, in pass 17 of 150")
         self.assertEqual(asic.stopped(log, 3.0, 30), "")  # another fault: an error
         self.assertEqual(asic.stopped(log, 30.0, None), "")
 
