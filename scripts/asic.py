@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Area, clock and power of the primitive tests, of the chip and of its blocks in standard cells, by synthesis with open
-tools.
+"""Area, clock and power of the primitive tests, of the chip and of its blocks in standard cells with open tools, by
+synthesis; of the smaller ones placed and routed.
 
 usage: asic.py [ROW]... [options]     without ROW all rows; `asic.py --list` names them
   --liberty PATH    cell library, .lib or .lib.gz, typical corner (default: OSU 0.18 um of Debian's qflow-tech-osu018)
@@ -11,15 +11,20 @@ usage: asic.py [ROW]... [options]     without ROW all rows; `asic.py --list` nam
   --write           rewrite the rows of this run in the tables of this library in docs/hardware/asic.md; other rows stay
                     if they were measured on the same rtl/. docs/figures/asic.csv has the critical paths with their
                     instances
+  --wires           only place and route the rows (without ROW multipliers and parts of the triangle test, to larger
+                    ones), in the default library, rows without memories. The last lines are `ROW cells=N die_um2=N
+                    wire_mm=X mhz=X wires_mhz=X unrouted=0 minutes=X`, MHz without and with wires
+  --limit MINUTES   with --wires: processor time of each tool at most. If one does not end within it, or leaves nets
+                    unrouted, the line is `ROW cells=N stopped: REASON`: a result
   --list            print the rows
 
-Tools: Debian's Yosys 0.23 with its ABC, OpenSTA. Synthesis only: ideal clock, no wires, no clock tree, no scan, no
-clock gating; paths from register to register. Memories are boxes: their bits are counted, apart from the logic, and
-their delay is assumed (docs/hardware/asic.md). Power is that of the cells at the clock of the row, with 0.1 and with
-0.5 transitions a clock at every cell. Outputs are kept below build/asic by the hash of what they depend on: a second
-run repeats only what changed. build/asic/LIBRARY.json holds the figures of all rows run so far. The last lines are `ROW
-um2=X nand2=N ff=N bits=N ns=X fo4=X mhz=X [mw=X/X] [mpairs=X pj=X/X]`. The row chip prints a line for each of its
-blocks besides.
+Tools: Debian's Yosys 0.23 with its ABC, OpenSTA; for --wires Debian's qflow, with its graywolf and qrouter. Ideal
+clock, no clock tree, no scan, no clock gating; paths from register to register; no wires but with --wires. Memories are
+boxes: their bits are counted, apart from the logic, and their delay is assumed (docs/hardware/asic.md). Power is that
+of the cells at the clock of the row, with 0.1 and with 0.5 transitions a clock at every cell. Outputs are kept below
+build/asic by the hash of what they depend on: a second run repeats only what changed. build/asic/LIBRARY.json and
+LIBRARY.wires.json hold the figures of all rows run so far. The last lines are `ROW um2=X nand2=N ff=N bits=N ns=X
+fo4=X mhz=X [mw=X/X] [mpairs=X pj=X/X]`. The row chip prints a line for each of its blocks besides.
 Exit codes: 0 done, 1 a tool failed, 2 bad arguments."""
 import argparse
 import collections
@@ -32,6 +37,7 @@ import json
 import os
 import pathlib
 import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -44,7 +50,9 @@ ROOT = fpga.ROOT
 BUILD = ROOT / "build" / "asic"
 PAGE = ROOT / "docs" / "hardware" / "asic.md"
 CSV = ROOT / "docs" / "figures" / "asic.csv"
-LIBERTY = "/usr/share/qflow/tech/osu018/osu018_stdcells.lib"
+TECH = "/usr/share/qflow/tech/osu018"
+LIBERTY = f"{TECH}/osu018_stdcells.lib"
+QFLOW = "/usr/lib/qflow"
 LEAF = "cchip_mul18"
 # memories of fewer bits become flip-flops
 BOX_BITS = 64
@@ -63,6 +71,8 @@ class Row:
     boxes: bool = True  # memories are boxes, or else flip-flops
     files: str = "cchip.f"
     macros: tuple = ()
+    wires: bool = False  # --wires without ROW takes it
+    alone: bool = False  # a part of a primitive test, for --wires only
 
 
 def rows():
@@ -73,7 +83,10 @@ def rows():
               "query_ring", "record_ring", "descriptor_queues", "dispatcher", "primtest", "chip_regs")
     leaf3 = {"files": "cchip_asic.f", "macros": ("-DCCHIP_MUL18_LATENCY=3",)}
     return {row.name: row for row in (
-        Row("mul18", LEAF), Row("mul18_leaf3", LEAF, **leaf3), *tests,
+        Row("mul18", LEAF, wires=True), Row("mul18_leaf3", LEAF, wires=True, **leaf3),
+        *(Row(name, f"cchip_{top}", boxes=False, wires=True, alone=True)
+          for name, top in (("mul_wide", "mul_wide"), ("dot3", "dot3"), ("axis", "sat_axis"),
+                            ("project", "sat_project"), ("pipeline", "sat_pipeline"))), *tests,
         Row("tri_tri_leaf3", "cchip_primtest_tri_tri", "tri-tri", **leaf3),
         Row("tri_tri_registers", "cchip_primtest_tri_tri", "tri-tri", boxes=False),
         Row("chip", "cchip_chip", blocks=tuple(f"cchip_{block}" for block in blocks)))}
@@ -484,6 +497,257 @@ def measure(row, options):
     return found
 
 
+# ---- place and route
+
+
+def layers(lef):
+    """Routing layers of a LEF file: {name: (um of a wire's width, pF of a um2, pF of a um of its edge)}."""
+    number = lambda pattern, body: float(re.search(rf"^\s*{pattern}\s+(\S+)", body, re.M)[1])
+    return {found[1]: tuple(number(name, found[2]) for name in ("WIDTH", "CAPACITANCE CPERSQDIST", "EDGECAPACITANCE"))
+            for found in re.finditer(r"^LAYER (\w+)\s+TYPE\s+ROUTING ;(.*?)^END \1", re.sub(r"[ \t]+", " ", lef),
+                                     re.M | re.S)}
+
+
+def wires_of(placed):
+    """(um2 of the die, {net: {layer: um}}) of a routed DEF file."""
+    units = float(re.search(r"^UNITS DISTANCE MICRONS (\d+)", placed, re.M)[1])
+    corners = [int(value) / units for value in re.search(
+        r"^DIEAREA \( (\S+) (\S+) \) \( (\S+) (\S+) \)", placed, re.M).groups()]
+    nets = re.search(r"^NETS \d+ ;\n(.*?)^END NETS", placed, re.M | re.S)[1]
+    found = {}
+    for body in re.split(r"^- ", nets, flags=re.M)[1:]:
+        length = found[body.split()[0]] = collections.Counter()
+        for layer, points in re.findall(r"(?:ROUTED|NEW) (\w+)((?: \( \S+ \S+ (?:\S+ )?\))+)", body):
+            at = None
+            for pair in re.findall(r"\( (\S+) (\S+)", points):
+                here = [at[k] if value == "*" else int(value) for k, value in enumerate(pair)]
+                if at:
+                    length[layer] += sum(abs(a - b) for a, b in zip(here, at)) / units
+                at = here
+    return (corners[2] - corners[0]) * (corners[3] - corners[1]), found
+
+
+def capacitance(length, metal):
+    """pF of a net by the rule of LEF: its area and both of its edges."""
+    return sum(um * (metal[layer][0] * metal[layer][1] + 2 * metal[layer][2]) for layer, um in length.items())
+
+
+def tree_of(line):
+    """(net, driver, [(ohm, pF, index of the parent or -1, pins)]) of a line of qrouter's delay file."""
+    net, drivers, driver, sinks, *words = line.split()
+    if drivers != "1":
+        raise fpga.ToolError(f"qrouter: net {net} has {drivers} drivers")
+    segments, path, at = [], [], 0
+    while at < len(words):
+        if words[at] == "(":
+            segments.append((float(words[at + 1]), float(words[at + 2]), path[-1] if path else -1, []))
+            path.append(len(segments) - 1)
+            at += 2
+        elif words[at] == ")" and path:
+            path.pop()
+        elif words[at] != ",":
+            segments[path[-1]][3].append(words[at])
+        at += 1
+    if path or sum(len(pins) for *_, pins in segments) != int(sinks):
+        raise fpga.ToolError(f"qrouter: net {net} does not reach its {sinks} sinks in the delay file")
+    return net, driver, segments
+
+
+def spef(trees, total):
+    """SPEF file of the trees of qrouter's delay file; total: pF of a net, or None for those of the delay file."""
+    out = ['*SPEF "IEEE 1481-1998"', '*DESIGN "design"', '*DATE "-"', '*VENDOR "-"', '*PROGRAM "asic.py"',
+           '*VERSION "1"', '*DESIGN_FLOW "-"', "*DIVIDER /", "*DELIMITER :", "*BUS_DELIMITER []", "*T_UNIT 1 NS",
+           "*C_UNIT 1 PF", "*R_UNIT 1 OHM", "*L_UNIT 1 HENRY", ""]
+    name = lambda pin: pin[4:] if pin.startswith("PIN/") else pin.replace("/", ":")
+    for net, driver, segments in trees:
+        all_pf = sum(pf for _, pf, *_ in segments)
+        scale = 1 if total is None or not all_pf else total[net] / all_pf
+        out += [f"*D_NET {net} {scale * all_pf:.6g}", "*CONN"]
+        for pin, way in [(driver, "O"), *((pin, "I") for *_, pins in segments for pin in pins)]:
+            port = pin.startswith("PIN/")
+            out.append(f"*P {name(pin)} {'I' if way == 'O' else 'O'}" if port else f"*I {name(pin)} {way}")
+        caps, resistors = collections.Counter(), []
+        for k, (ohm, pf, parent, pins) in enumerate(segments):
+            ends = name(driver) if parent < 0 else f"{net}:{parent}", f"{net}:{k}"
+            for end in ends:
+                caps[end] += scale * pf / 2
+            resistors.append((*ends, ohm))
+            resistors += [(ends[1], name(pin), 0.001) for pin in pins]
+        out.append("*CAP")
+        out += [f"{i} {node} {pf:.6g}" for i, (node, pf) in enumerate(caps.items(), 1)]
+        out.append("*RES")
+        out += [f"{i} {a} {b} {ohm:.6g}" for i, (a, b, ohm) in enumerate(resistors, 1)]
+        out += ["*END", ""]
+    return "\n".join(out)
+
+
+def unrouted(log):
+    """Nets that qrouter says it has not routed. The script of qflow looks for another file than qrouter writes."""
+    found = re.findall(r"(No failed routes!)|Failed net routes: (\d+)", log)
+    if not found:
+        raise fpga.ToolError("qrouter: its log does not say whether all nets are routed")
+    return int(found[-1][1] or 0)
+
+
+def stopped(log, minutes, limit):
+    """Why a tool gave no result, if --limit is the reason."""
+    if not limit or minutes < 0.99 * limit:
+        return ""
+    left = re.findall(r"^Nets remaining: (\d+)", log, re.M)
+    passes = re.search(r"( +\d+)+\s*\Z", log)  # graywolf anneals in 150
+    where = f", {left[-1]} nets to go" if left else f", in pass {passes[0].split()[-1]} of 150" if passes else ""
+    return f"not done after {minutes:.0f} minutes{where}"
+
+
+class Stopped(Exception):
+    """A tool has reached --limit: a result, not an error."""
+
+
+def measured(name, command, files, depends, product, tool, limit):
+    """(folder, minutes) of a step of place and route; what stopped it is kept, too."""
+    key = hashlib.sha256(json.dumps([files, depends]).encode()).hexdigest()[:12]
+    note = BUILD / f"{name}-{key}.stopped.json"
+    if note.exists() and (kept := json.loads(note.read_text()))["limit"] >= (limit or 1e9):
+        raise Stopped(kept["reason"])
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    spent = lambda: sum(b - a for a, b in zip(before[:2], resource.getrusage(resource.RUSAGE_CHILDREN)[:2])) / 60
+    try:
+        folder = fpga.step(name, command, files, depends, product, BUILD)
+    except fpga.ToolError:
+        log = "".join(path.read_text(errors="replace") for path in (BUILD / f"{name}.failed/logs").glob("*.log"))
+        if not (reason := stopped(log, spent(), limit)):
+            raise
+        reason = f"{tool}: {reason}"
+        note.write_text(json.dumps({"limit": limit or 1e9, "reason": reason}))
+        raise Stopped(reason) from None
+    if not (folder / "minutes").exists():
+        (folder / "minutes").write_text(f"{spent():.3f}")
+    return folder, float((folder / "minutes").read_text())
+
+
+def project():
+    """Files that the scripts of qflow want; {} is the folder."""
+    here = f"{ROOT}/{{}}"
+    names = {"projectpath": here, "sourcedir": here, "synthdir": here, "layoutdir": here, "logdir": f"{here}/logs",
+             "techdir": TECH, "techname": "osu018", "scriptdir": f"{QFLOW}/scripts", "bindir": f"{QFLOW}/bin"}
+    return {"qflow_vars.sh": "".join(f"set {name}={value}\n" for name, value in names.items()),
+            "project_vars.sh": 'set vddnet="vdd"\nset gndnet="gnd"\n'}
+
+
+def flat(row, path):
+    """Netlist without hierarchy, in BLIF; names are numbers."""
+    lib, _ = library(path)
+    folder, boxes = mapped(row, path)
+    if boxes:
+        raise fpga.ToolError("has memories, which have no layout")
+    [pin], buffer = lib.cells[lib.buffer].inputs, lib.buffer
+    here = folder.relative_to(ROOT)
+    script = (f"read_liberty -lib {here}/cells.lib\nread_verilog {here}/netlist.v\nhierarchy -top {row.top}\nflatten\n"
+              "opt_clean -purge\nsplitnets -ports -format __\nopt_clean -purge\nrename -hide w:* c:*\n"
+              "rename -enumerate\n"
+              # the library has no cell for a constant: they are ports
+              "write_blif -gates -true - one_ -false - zero_ -undef - zero_ "
+              f"-buf {buffer} {pin} {lib.cells[buffer].output} {{}}/design.blif\n")
+    made = run(f"{row.name}.flat", "yosys", {"run.ys": script}, folder.name, "design.blif")
+    text = (made / "design.blif").read_text()
+    gates = [line for line in text.splitlines() if line.startswith(".gate")]
+    head = [line for line in text.splitlines() if line.startswith((".model", ".inputs", ".outputs"))]
+    ports = [f".inputs {name}" for name in ("zero_", "one_") if any(f"={name}" in line for line in gates)]
+    return "\n".join([*head, *ports, *gates, ".end"]) + "\n", len(gates)
+
+
+def lay_out(row, options):
+    """Figures with wires, or why there are none."""
+    lib, _ = library(options.liberty)
+    blif, cells = flat(row, options.liberty)
+    area = sum(lib.cells[kind].area for kind in re.findall(r"^\.gate (\w+)", blif, re.M))
+    made = {"cells": cells, "gates_um2": round(area)}
+    try:
+        files = {**project(), "design.blif": blif, "design.par": pathlib.Path(TECH, "osu018.par").read_text(),
+                 "design_powerground": "", **{f"design.{rest}": "" for rest in ("rtl.v", "rtlnopwr.v", "rtlbb.v")}}
+        script = lambda name, *more: [f"{QFLOW}/scripts/{name}.sh", *more, f"{ROOT}/{{}}", "design"]
+        place, minutes = measured(f"{row.name}.place", script("placement", "-d"), files, package("graywolf"),
+                                  "design_unroute.def", "graywolf", options.limit)
+        say(f"{row.name}: {cells} cells placed in {minutes:.1f} minutes")
+        files = {**project(), **{name: (place / name).read_text()
+                                 for name in ("design.cfg", "design_unroute.def", "design.rtlnopwr.v")}}
+        made["place_minutes"] = minutes
+        route, made["route_minutes"] = measured(f"{row.name}.route", script("router"), files, package("qrouter"),
+                                                "design.rc", "qrouter", options.limit)
+    except Stopped as error:
+        return {**made, "stopped": str(error)}
+    if missing := unrouted((route / "logs/route.log").read_text(errors="replace")):
+        return {**made, "stopped": f"qrouter: {missing} nets unrouted after {made['route_minutes']:.0f} minutes"}
+    metal = layers(pathlib.Path(TECH, "osu018_stdcells.lef").read_text())
+    made["die_um2"], lengths = wires_of((route / "design.def").read_text())
+    trees = [tree_of(line) for line in (route / "design.rc").read_text().splitlines() if line.strip()]
+    made.update(wire_mm=sum(sum(length.values()) for length in lengths.values()) / 1000, unrouted=0,
+                nets=len(trees))
+    pf = {net: capacitance(length, metal) for net, length in lengths.items()}
+    made["wire_pf"] = sum(pf.values())
+    netlist = (route / "design.rtlnopwr.v").read_text()
+    for key, wires in (("", ""), ("wires_", spef(trees, pf)), ("qrouter_", spef(trees, None))):
+        made.update(timed(f"{row.name}.{key}layout", row.top, netlist, wires, key, options))
+    return made
+
+
+def timed(name, top, netlist, wires, key, options):
+    """ns and MHz of a placed netlist, with the wires of a SPEF file if there are some."""
+    lib, _ = library(options.liberty)
+    period = 400 * fo4(options.liberty) / lib.ns
+    files = {"run.tcl": ("read_liberty {}/cells.lib\nread_verilog {}/netlist.v\n"
+                         f"link_design {top}\ncreate_clock -name clk -period {period:g} [get_ports clk]\n"
+                         + ("read_spef {}/wires.spef\n" if wires else "") +
+                         "report_checks -path_delay max -format full -digits 5 > {}/report\n"),
+             "cells.lib": lib.only(set(re.findall(r"^(\w+) \w+ \( \.", netlist, re.M)) & set(lib.cells)),
+             "netlist.v": netlist, **({"wires.spef": wires} if wires else {})}
+    folder = run(name, "sta", files, [], "report")
+    if problem := re.search(r"^(?:Error|Warning).*", (folder / "log").read_text(), re.M):
+        raise fpga.ToolError(f"OpenSTA: {problem[0]}")
+    start, end, slack, cells = path_of((folder / "report").read_text())
+    ns = (period - slack) * lib.ns
+    return {f"{key}ns": ns, f"{key}mhz": 1000 / ns, f"{key}path": cells}
+
+
+@functools.lru_cache(None)
+def package(tool):
+    """Version of a tool of qflow, or the end with what installs it."""
+    if not (shutil.which(tool) and os.path.exists(f"{QFLOW}/scripts/placement.sh")):
+        sys.exit(f"asic.py: no {tool} of qflow; run: scripts/bootstrap --dev")
+    return [subprocess.run(["dpkg-query", "-W", tool, "qflow"], stdout=subprocess.PIPE, text=True).stdout]
+
+
+def wires_line(name, r):
+    if "stopped" in r:
+        return f"{name} cells={r['cells']} stopped: {r['stopped']}"
+    return (f"{name} cells={r['cells']} die_um2={r['die_um2']:.0f} wire_mm={r['wire_mm']:.1f} mhz={r['mhz']:.1f} "
+            f"wires_mhz={r['wires_mhz']:.1f} unrouted={r['unrouted']} "
+            f"minutes={r['place_minutes'] + r['route_minutes']:.1f}")
+
+
+def wired(row, options):
+    found = lay_out(row, options)
+    say(wires_line(row.name, found))
+    return {row.name: found}
+
+
+def wires_table(found):
+    body = []
+    for name, r in found.items():
+        line = [f"`{name}`", f"{r['cells']:,}", f"{r['gates_um2']:,}"]
+        minutes = [f"{r[key]:.1f}" if key in r else "-" for key in ("place_minutes", "route_minutes")]
+        if "stopped" in r:
+            line += [*["-"] * 8, minutes[0], r["stopped"]]
+        else:
+            line += [f"{r['die_um2']:,.0f}", f"{100 * r['gates_um2'] / r['die_um2']:.0f} %", f"{r['wire_mm']:,.0f}",
+                     f"{1000 * r['wire_mm'] / r['nets']:.0f}",
+                     *(f"{r[key]:.0f}" for key in ("mhz", "wires_mhz", "qrouter_mhz")),
+                     f"{100 * r['wires_mhz'] / r['mhz'] - 100:.0f} %", *minutes]
+        body.append(line)
+    return datasheet.table(["row", "cells", "um2 of cells", "um2 of the die", "full", "mm of wire", "um a net", "MHz",
+                            "MHz with wires", "MHz, one edge", "change", "minutes to place", "minutes to route"], body)
+
+
 # ---- output
 
 
@@ -537,12 +801,15 @@ def arguments():
     parser.add_argument("--liberty", type=os.path.abspath, default=LIBERTY)
     parser.add_argument("--campaign", type=os.path.abspath, default=ROOT / "build/release/bin/cchip_campaign")
     parser.add_argument("--pairs", type=int, default=20000)
-    for flag in ("--write", "--list"):
+    parser.add_argument("--limit", type=float)
+    for flag in ("--write", "--list", "--wires"):
         parser.add_argument(flag, action="store_true")
     options = parser.parse_args()
     unknown = sorted(set(options.rows) - set(rows()))
     if unknown:
         parser.error(f"no row {unknown[0]}, one of: {' '.join(rows())}")
+    if options.wires and options.liberty != LIBERTY:
+        parser.error(f"--wires has layouts of the cells of {LIBERTY} alone")
     if not options.list and not os.path.exists(options.liberty):
         parser.error(f"no {options.liberty}; Debian's qflow-tech-osu018 has the default: scripts/bootstrap --dev")
     return options
@@ -599,38 +866,53 @@ def write(name, found):
     """Rewrites the tables of the library; rows of the page that are not in found stay if the RTL is the same."""
     head = f"RTL: {tree()}. FO4: {next(iter(found.values()))['fo4_ps']} ps."
     for table, make in TABLES.items():
-        block = re.search(datasheet.BLOCK.format(f" {name} {table}"), PAGE.read_text(), re.S)
-        if not block:
-            say(f"asic.py: docs/hardware/asic.md has no table {name} {table}; it is as it was")
-        elif make(found).count("\n") > 2:
-            datasheet.rewrite(PAGE, f"{name} {table}", with_others(block[0], head, make(found)))
+        write_table(f"{name} {table}", head, make(found))
+
+
+def write_table(name, head, made):
+    if made.count("\n") <= 2:
+        return
+    block = re.search(datasheet.BLOCK.format(f" {name}"), PAGE.read_text(), re.S)
+    if block:
+        datasheet.rewrite(PAGE, name, with_others(block[0], head, made))
+    else:
+        say(f"asic.py: docs/hardware/asic.md has no table {name}; it is as it was")
 
 
 def main():
     options = fpga.command_line(__doc__, arguments, rows)
     if not options:
         return 0
-    chosen = [row for name, row in rows().items() if not options.rows or name in options.rows]
-    if not pathlib.Path(options.campaign).exists():
+    chosen = [row for name, row in rows().items()
+              if (name in options.rows if options.rows else row.wires if options.wires else not row.alone)]
+    if options.limit:  # children have it, too
+        hard = resource.getrlimit(resource.RLIMIT_CPU)[1]
+        resource.setrlimit(resource.RLIMIT_CPU, (round(60 * options.limit), hard))
+    if options.wires:
+        for tool in ("graywolf", "qrouter"):
+            package(tool)
+    elif not pathlib.Path(options.campaign).exists():
         say(f"asic.py: no {options.campaign}, so no pairs per second; run: make campaign-build")
     found, failures = {}, []
     bar.total = len(chosen)
     with bar:
         for row in chosen:
             try:
-                found |= bar.counted(measure)(row, options)
+                found |= bar.counted(wired if options.wires else measure)(row, options)
             except fpga.ToolError as error:
                 failures.append(f"{row.name}: {error}")
                 say(f"asic.py: {failures[-1]}")
     name = library(options.liberty)[0].name
-    save(name, found)
-    if options.write and not failures:
+    save(f"{name}.wires" if options.wires else name, found)
+    if options.write and not failures and options.wires:
+        write_table(f"{name} wires", f"RTL: {tree()}.", wires_table(found))
+    elif options.write and not failures:
         write(name, found)
         write_csv(name, found)
     for failure in failures:
         print(f"asic.py: {failure}", file=sys.stderr)
     for line, figures in found.items():
-        print(last_line(line, figures))
+        print((wires_line if options.wires else last_line)(line, figures))
     return 1 if failures else 0
 
 

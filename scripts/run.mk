@@ -11,6 +11,8 @@ PAIRS ?= 100000000
 SEEDS ?= 5
 # another cell library for scripts/run asic, as in: scripts/run asic LIBERTY=cells.lib.gz
 LIBERTY ?=
+# minutes of each tool of scripts/run asic-wires
+LIMIT ?= 60
 # meshes of campaign-leaves, each against itself (Debian: assimp-testmodels)
 MODELS ?= /usr/share/assimp/models
 LEAVES ?= $(addprefix $(MODELS)/,OBJ/WusonOBJ.obj OBJ/spider.obj STL/Spider_binary.stl) \
@@ -20,7 +22,7 @@ QUAD_LEAVES ?= build/leaves/BLEND/Suzanne_248.blend.obj
 # more options of campaign-leaves, as --eta 2
 LEAF_ARGS ?=
 
-.PHONY: list release docs-layout peers robots sim-reconfig sim-fabric sim-traverse wave-of formal-all mutants probes test-gates test-export test-debug test-asan test-arm64 cross-windows fuzz-tools fuzz campaign-build campaign campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-cluster campaign-chip campaign-chip-faults campaign-chip-swaps proof proof-campaign proof-of-chip picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot coverage coverage-bins coverage-cpp bench-certificate bench-scene sdist test-sdist bench-python bench-clash bench-clash-scale bench-sat test-dask test-ply test-robots test-assemblies bench-chip fpga fpga-sweep fpga-quick asic asic-quick tidy deb
+.PHONY: list release docs-layout peers robots sim-reconfig sim-fabric sim-traverse wave-of formal-all mutants probes test-gates test-export test-debug test-asan test-arm64 cross-windows fuzz-tools fuzz campaign-build campaign campaign-grid campaign-relation campaign-collide campaign-classes campaign-certainty campaign-leaves campaign-boxes campaign-geometry campaign-swaps campaign-cluster campaign-chip campaign-chip-faults campaign-chip-swaps proof proof-campaign proof-of-chip picture table1 table1-plot bench-reconfig bench-collide bench-distance bench-robot coverage coverage-bins coverage-cpp bench-certificate bench-scene sdist test-sdist bench-python bench-clash bench-clash-scale bench-sat test-dask test-ply test-robots test-assemblies bench-chip fpga fpga-sweep fpga-quick asic asic-quick asic-wires tidy deb
 
 define RUN_GROUPS
 Try it
@@ -36,7 +38,7 @@ Check for long
   campaign/20_min campaign-grid/14_min campaign-relation/6_min campaign-collide campaign-classes/5_min campaign-certainty/3_min campaign-leaves/13_s campaign-boxes
   campaign-geometry/hours campaign-swaps campaign-cluster campaign-chip/hours campaign-chip-faults campaign-chip-swaps proof-campaign
 Measure
-  bench-reconfig bench-collide/10_min bench-distance bench-robot bench-scene/3_min bench-certificate bench-python/1_min bench-clash/3_min bench-clash-scale/2_min bench-sat bench-chip/30_min fpga/hours fpga-quick fpga-sweep/hours asic asic-quick
+  bench-reconfig bench-collide/10_min bench-distance bench-robot bench-scene/3_min bench-certificate bench-python/1_min bench-clash/3_min bench-clash-scale/2_min bench-sat bench-chip/30_min fpga/hours fpga-quick fpga-sweep/hours asic asic-quick asic-wires/hours
 Tools
   peers robots
 endef
@@ -423,6 +425,9 @@ asic: campaign-build ## area, clock and power of primitive tests, blocks and chi
 
 asic-quick: campaign-build ## the same of the triangle test alone
 	scripts/asic.py tri_tri $(if $(LIBERTY),--liberty '$(LIBERTY)') --campaign $(CAMPAIGN)
+
+asic-wires: ## multipliers and parts of the triangle test placed and routed in standard cells, each tool LIMIT minutes at most, into docs/hardware/asic.md
+	scripts/asic.py --wires --limit $(LIMIT) --write
 
 tidy: build ## clang-tidy over our own C++ (slow)
 	run-clang-tidy -quiet -j $(JOBS) -p $(RELEASE) '^$(CURDIR)/(lib|cpp_ref|sim|bench|tests)/'

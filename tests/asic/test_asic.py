@@ -3,7 +3,8 @@
 """scripts/asic.py: reading of libraries, netlists and reports; the multiplier leaf through the whole flow; the leaf of
 rtl/cchip_asic.f beside the portable one.
 
-Leaf needs yosys, sta and the default library, else it ends with exit code 77 and says what is missing.
+Wires: the reports of place and route, without these tools. Leaf needs yosys, sta and the default library, else it ends
+with exit code 77 and says what is missing.
 Environment: IVERILOG, YOSYS, VERILATOR, CCHIP_SEED."""
 import collections
 import json
@@ -216,6 +217,123 @@ class Reading(unittest.TestCase):
                 self.assertTrue(list(ROOT.glob(f"rtl/*/{top}.v")), top)
 
 
+LEF = """LAYER cc
+  TYPE	CUT ;
+END cc
+LAYER metal1
+  TYPE		ROUTING ;
+  WIDTH		0.5 ;
+  CAPACITANCE	CPERSQDIST 4e-05 ;
+  EDGECAPACITANCE 8e-05 ;
+END metal1
+LAYER metal2
+  TYPE		ROUTING ;
+  WIDTH		1 ;
+  CAPACITANCE	CPERSQDIST 2e-05 ;
+  EDGECAPACITANCE 6e-05 ;
+END metal2
+"""
+
+DEF = """UNITS DISTANCE MICRONS 100 ;
+DIEAREA ( -320 -300 ) ( 680 1700 ) ;
+NETS 2 ;
+- n1
+  ( INV_1_1 A )
+  ( PIN a )
++ ROUTED metal1 ( 100 200 ) ( 300 * ) M2_M1
+  NEW metal2 ( 300 200 ) ( * 700 0 ) ( * 900 ) M2_M1
+;
+- n2
++ ROUTED metal2 ( 0 0 ) M2_M1 ;
+END NETS
+SPECIALNETS 1 ;
+- n1
++ ROUTED metal1 40 ( 12305 23700 ) ( 12370 * )
+;
+END SPECIALNETS
+"""
+
+DELAYS = "n1 1 PIN/a 3 ( 2 0.004 ( 1 0.002 INV_1_1/A , ( 3 0.002 INV_2_7/A ) ) , ( 0.5 0 PIN/y ) ) "
+
+
+class Wires(unittest.TestCase):
+    """What --wires reads of graywolf's and qrouter's files."""
+
+    def test_length_of_wires_and_die(self):
+        area, lengths = asic.wires_of(DEF)
+        self.assertEqual(area, 10 * 20)
+        self.assertEqual(lengths, {"n1": {"metal1": 2.0, "metal2": 7.0}, "n2": {}})
+
+    def test_capacitance_counts_both_edges(self):
+        metal = asic.layers(LEF)
+        self.assertEqual(metal, {"metal1": (0.5, 4e-5, 8e-5), "metal2": (1, 2e-5, 6e-5)})
+        self.assertAlmostEqual(asic.capacitance({"metal1": 2, "metal2": 7}, metal), 2 * 18e-5 + 7 * 14e-5)
+
+    def test_tree_of_a_net(self):
+        self.assertEqual(asic.tree_of(DELAYS), ("n1", "PIN/a", [
+            (2, 0.004, -1, []), (1, 0.002, 0, ["INV_1_1/A"]), (3, 0.002, 1, ["INV_2_7/A"]), (0.5, 0, 0, ["PIN/y"])]))
+        for wrong in (DELAYS.replace(" 3 (", " 4 ("), DELAYS.replace("n1 1", "n1 2"), DELAYS.rstrip(" )")):
+            with self.assertRaises(asic.fpga.ToolError, msg=wrong):
+                asic.tree_of(wrong)
+
+    def test_parasitics_have_the_wanted_capacitance(self):
+        for total, want in ((None, 0.008), ({"n1": 0.1}, 0.1)):
+            text = asic.spef([asic.tree_of(DELAYS)], total)
+            self.assertIn(f"*D_NET n1 {want:g}\n", text)
+            caps = re.search(r"\*CAP\n(.*?)\*RES", text, re.S)[1]
+            self.assertAlmostEqual(sum(float(line.split()[2]) for line in caps.splitlines()), want)
+            ohms = re.search(r"\*RES\n(.*?)\*END", text, re.S)[1]
+            self.assertIn("1 a n1:0 2\n", ohms)
+            self.assertIn(" n1:2 INV_2_7:A 0.001\n", ohms)
+            self.assertEqual(re.findall(r"^\*[PI] (.*)", text, re.M), ["a I", "INV_1_1:A I", "INV_2_7:A I", "y O"])
+            self.assertIn("*C_UNIT 1 PF", text)
+
+    def test_what_stopped_a_tool(self):
+        log = "Nets remaining: 200\nNets remaining: 30\n"
+        self.assertEqual(asic.stopped(log, 30.0, 30), "not done after 30 minutes, 30 nets to go")
+        self.assertEqual(asic.stopped("", 30.0, 30), "not done after 30 minutes")
+        passes = "Yale University\n  0 \n  1   2  15 \n 16  17 "
+        self.assertEqual(asic.stopped(passes, 30.0, 30), "not done after 30 minutes, in pass 17 of 150")
+        self.assertEqual(asic.stopped(log, 3.0, 30), "")  # another fault: an error
+        self.assertEqual(asic.stopped(log, 30.0, None), "")
+
+    def test_unrouted_nets(self):
+        log = "Progress: Stage 1\nFailed net routes: 17\n"
+        self.assertEqual(asic.unrouted(log), 17)
+        self.assertEqual(asic.unrouted(f"{log}Final: No failed routes!\n"), 0)
+        with self.assertRaises(asic.fpga.ToolError):
+            asic.unrouted("Nets remaining: 3\n")
+
+    def test_a_stop_is_kept_for_the_same_limit_or_less(self):
+        with tempfile.TemporaryDirectory(dir=ROOT / "build") as folder, \
+                unittest.mock.patch.object(asic, "BUILD", pathlib.Path(folder)):
+            fails = {"command": ["false"], "files": {"a": "b"}, "depends": [], "product": "c", "tool": "qrouter"}
+            for _ in range(2):  # the second time from what was kept
+                with self.assertRaisesRegex(asic.Stopped, "qrouter: not done after 0 minutes"):
+                    asic.measured("x", **fails, limit=1e-6)
+                fails["command"] = ["no such program"]
+            fails["command"] = ["false"]
+            with self.assertRaises(asic.fpga.ToolError):  # a larger limit tries again
+                asic.measured("x", **fails, limit=3)
+
+    def test_a_missing_tool_is_named(self):
+        with unittest.mock.patch.dict(os.environ, PATH="/nowhere"), self.assertRaises(SystemExit) as caught:
+            asic.package.__wrapped__("graywolf")
+        self.assertEqual(str(caught.exception), "asic.py: no graywolf of qflow; run: scripts/bootstrap --dev")
+
+    def test_lines_and_table(self):
+        done = {"cells": 2184, "gates_um2": 81625, "die_um2": 90112.0, "wire_mm": 77.97, "unrouted": 0, "nets": 2221,
+                "mhz": 233.74, "wires_mhz": 216.26, "qrouter_mhz": 222.6, "place_minutes": 0.3, "route_minutes": 0.44}
+        found = {"mul18": done, "axis": {"cells": 16300, "gates_um2": 677776, "stopped": "graywolf: not done"}}
+        self.assertEqual(asic.wires_line("mul18", done), "mul18 cells=2184 die_um2=90112 wire_mm=78.0 mhz=233.7 "
+                         "wires_mhz=216.3 unrouted=0 minutes=0.7")
+        self.assertEqual(asic.wires_line("axis", found["axis"]), "axis cells=16300 stopped: graywolf: not done")
+        table = asic.wires_table(found)
+        self.assertEqual(len({line.count("|") for line in table.splitlines()}), 1, table)
+        self.assertIn("| 91 % | 78 | 35 | 234 | 216 | 223 | -7 % |", table)
+        self.assertTrue(re.search(datasheet.BLOCK.format(" osu018_stdcells wires"), asic.PAGE.read_text(), re.S))
+
+
 BENCH = """
 module bench;
   reg clk = 0;
@@ -250,6 +368,9 @@ class Leaf(unittest.TestCase):
         self.assertTrue(2000 < figures["nand2"] < 5000, figures)
         self.assertLess(figures["mw"]["0.1"], figures["mw"]["0.5"])
         folder, _ = asic.mapped(row, asic.LIBERTY)
+        blif, cells = asic.flat(row, asic.LIBERTY)  # for place and route
+        self.assertEqual(cells, asic.instances((folder / "netlist.v").read_text()).total())
+        self.assertEqual(blif.count("CLK=clk"), figures["ff"])
         (folder / "bench.v").write_text(BENCH)
         models = pathlib.Path(asic.LIBERTY).with_suffix(".v")
         self.assertEqual(run(tool("iverilog"), "-g2005", "-s", "bench", "-o", folder / "bench.vvp", folder / "bench.v",
