@@ -107,7 +107,8 @@ module cchip_refit_axi #(
     refit_limit_q <= limit == 32'd0 ? 32'd0 :
         limit[31:29] != 3'd0 ? 32'hFFFFFFFF : {1'b0, limit[28:0], 2'd0} + 32'd64;
 
-  wire read_valid, beat_valid, beat_last;
+  wire read_valid, read_slot, beat_valid, beat_slot, beat_last;
+  wire [2:0] beat;
   wire [31:0] read_line;
   wire [`CCHIP_READ_CODE_W-1:0] beat_code;
   wire [DATA_W-1:0] beat_data;
@@ -132,8 +133,11 @@ module cchip_refit_axi #(
       .m_line       (m_line),
       .m_lines      (m_lines),
       .m_read_valid (read_valid),
+      .m_read_slot  (read_slot),
       .m_read_line  (read_line),
       .s_read_valid (beat_valid),
+      .s_read_slot  (beat_slot),
+      .s_read_beat  (beat),
       .s_read_last  (beat_last),
       .s_read_code  (beat_code),
       .s_read_data  (beat_data),
@@ -148,8 +152,6 @@ module cchip_refit_axi #(
   );
 
   wire read_outstanding, write_outstanding;
-  wire beat_slot;
-  wire [2:0] beat;
   wire [1:0] slots_outstanding;
   cchip_axi_read #(
       .CLIENTS(1),
@@ -160,7 +162,7 @@ module cchip_refit_axi #(
       .rst            (rst),
       .limit          (limit),
       .s_valid        (read_valid),
-      .s_slot         (1'b0),
+      .s_slot         (read_slot),
       .s_line         ({26'd0, read_line}),
       .m_valid        (beat_valid),
       .m_slot         (beat_slot),
@@ -220,7 +222,7 @@ module cchip_refit_axi #(
   );
   assign outstanding = read_outstanding | write_outstanding;
 
-  wire unused = &{1'b0, beat_slot, beat, slots_outstanding, write_beat};
+  wire unused = &{1'b0, slots_outstanding, write_beat};
 
 endmodule
 `default_nettype wire
