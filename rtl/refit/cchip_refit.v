@@ -7,19 +7,28 @@
 //   order        children before their node, by descent from the root: the kind of a line stands in
 //                its parent, so a pass over the lines in the order of their numbers could not tell
 //                a leaf from a node. Every line is read once, every node is written once
-//   bounds       those of a node's children lie in a block RAM until the node is written, four for
-//                each level in work, so the size of an object does not matter. The stored volumes
-//                are rounded too much to compute those of the node above from them
-//   memory       the ports are those of a client of cchip_axi_read (slot 0) and cchip_axi_write
-//   end          m_code, m_line: the current line, m_lines: lines read. After an error a part of
-//                the nodes is new, the others are old: no query may use the image
+//   overlap      three parts work at once: cchip_refit_walk reads up to two lines ahead of the
+//                current one, vertices of the current leaf pass here, cchip_refit_node finishes the
+//                node whose children were done last, and its write waits for its answer meanwhile
+//   bounds       those of a node's children lie in a block RAM until the node is finished, four for
+//                each level in work, so the size of an object does not matter; beside them those of
+//                all children so far. The stored volumes are rounded too much to compute those of
+//                the node above from them
+//   memory       the ports are those of a client of cchip_axi_read (slots 0, 1) and cchip_axi_write;
+//                two reads and a write in flight
+//   end          m_code, m_line: the current line, or the node that was finished or written, if the
+//                error is its own; m_lines: lines read. Errors count in the order of the descent,
+//                that of a line read ahead when it becomes the current one. What is outstanding is
+//                awaited first. After an error a part of the nodes is new, the others are old: no
+//                query may use the image
 //   silence      each wait for memory lasts `limit` clocks (cchip_timeout) at most; it must exceed
 //                those of the masters. What is outstanding then is waited for in the background: a
 //                command that comes before it ends is answered with OWED
-//   abort        ends the refit before the next request; what is outstanding is awaited first
-//   time         13 vertices + beats + 20 clocks a leaf, 27 children + step + 2 beats + 42 a node,
-//                with beats of 512 / DATA_W and memory that answers at once
-//   cuts         every path: each output is a flip-flop or decoded from the state
+//   abort        ends the refit before it takes another line or begins another write
+//   time         without waits 13 vertices + 2 clocks a leaf, 17 a node (cchip_refit_node takes
+//                longer, beside them); waits: docs/modules/cchip_refit.md
+//   cuts         every path: each output is a flip-flop, decoded from the state or chosen between
+//                flip-flops
 //   reset        must reset the masters too; memory may hold a part of the new nodes
 module cchip_refit #(
     // levels of nodes in work, leaves not included; a tree of the library has 47 at most; legal:
@@ -170,9 +179,10 @@ module cchip_refit #(
   wire last_place = place_q == 4'd15;
   wire last_issue = run_q && last_vertex && last_place;
   always @(posedge clk) begin
-    // bounds of the node that is finished are needed yet; the pass of a leaf stores more slowly than
-    // those of a child are read
-    conflict_q <= node_level == level[LEVEL_W-1:0] && (node_boxes || (node_reads && node_child < index_q));
+    // bounds of the node that is finished are needed yet; those of a child are read faster than a
+    // leaf stores its own
+    conflict_q <= node_level == level[LEVEL_W-1:0] &&
+        (node_boxes || (node_reads && node_child < index_q));
     if (start_leaf || start_rise) begin
       rise_q        <= start_rise;
       place_q       <= 4'd0;
@@ -191,8 +201,8 @@ module cchip_refit #(
       .axes (axes)
   );
 
-  // ---- clocks 1..7: {levels, child, rise, stored, place, first, last vertex}. Bounds are stored as
-  // those of a child, of the node in work or above it
+  // ---- clocks 1..7: {levels, child, rise, stored, place, first, last vertex}. Bounds are stored
+  // as those of a child, of the node in work or above it
   localparam integer CONTROL_W = LEVEL_W + LEVEL_W + 2 + 1 + 1 + 4 + 2;
   wire [CONTROL_W-1:0] control = {
     level_above[LEVEL_W-1:0],
@@ -300,7 +310,7 @@ module cchip_refit #(
       .clk           (clk),
       .rst           (rst),
       .drop          (rests || fault_q),
-      .abort         (abort_q),
+      .hold_write    (abort_q),
       .start         (start_rise),
       .s_level       (level[LEVEL_W-1:0]),
       .s_base        (base_q),

@@ -4,7 +4,8 @@
 `include "cchip_assert.vh"
 // cchip_refit_axi: cchip_refit with a cchip_axi_read and a cchip_axi_write of its own, for an AXI4
 // memory. Commands, codes and rules are those of cchip_refit.
-//   traffic      one line at a time: a read or a write, each a burst of a whole line, aligned
+//   traffic      two reads, under IDs 0 and 1, and a write at most in flight, each a burst of a
+//                whole line, aligned
 //   limit        of each read and write. The engine itself waits 4 `limit` + 64 clocks, 2^32 - 1 at
 //                most, longer than its masters need to say that memory is silent; 0: the defaults
 //   outstanding  the answer to a request of this refit, or of an abandoned one, is pending
@@ -46,7 +47,7 @@ module cchip_refit_axi #(
     // ---- memory
     output wire                           m_axi_arvalid,  // AXI4 read address
     input  wire                           m_axi_arready,  // AXI4
-    output wire                           m_axi_arid,     // always 0
+    output wire                           m_axi_arid,     // 0 or 1
     output wire [                   63:0] m_axi_araddr,   // address of a line, bytes
     output wire [                    7:0] m_axi_arlen,    // a whole line: 512 / DATA_W - 1
     output wire [                    2:0] m_axi_arsize,   // AXI4

@@ -8,7 +8,7 @@
 //                the children are read from the block RAM until the state leaves VOLUMES
 //   write        begins when the one before it is answered, unless that was an error
 //   errors       m_fault for a clock: RANGE, ABORT of this node, or the code of a write
-//   time         from z: step + 16 clocks a child + 1 for each child less than four + the beats + 19
+//   time         from start to idle 30 clocks, step, 15 for each child and the beats
 //   cuts         every path: m_write_data is chosen between flip-flops
 //   reset        nothing in work, no write outstanding
 module cchip_refit_node #(
@@ -18,7 +18,7 @@ module cchip_refit_node #(
     input  wire                           clk,            // clock, rising edge
     input  wire                           rst,            // synchronous reset, active high
     input  wire                           drop,           // give up what is not offered yet
-    input  wire                           abort,          // begin no write
+    input  wire                           hold_write,     // begin no write
     input  wire                           start,          // a node; only if idle
     input  wire [            LEVEL_W-1:0] s_level,        // its level
     input  wire [                   31:0] s_base,         // address of the image / 64; it stays
@@ -194,13 +194,13 @@ module cchip_refit_node #(
         VOLUMES: if (last_issue) state_q <= DRAIN;
         DRAIN: if (last_q[6]) state_q <= FILL;
         FILL: if (there_q == 2'd3) state_q <= BEGIN;
-        BEGIN: if (may_begin) state_q <= abort ? IDLE : OFFER;
+        BEGIN: if (may_begin) state_q <= hold_write ? IDLE : OFFER;
         default: if (beat_step && last_beat) state_q <= IDLE;
       endcase
       if (drop && state_q != OFFER) state_q <= IDLE;
     end
   end
-  assign begins        = may_begin & ~abort;
+  assign begins        = may_begin & ~hold_write;
   assign idle          = state_q == IDLE;
   assign boxes         = state_q == FRAME;
   assign reads         = state_q == VOLUMES;
@@ -208,7 +208,7 @@ module cchip_refit_node #(
   assign m_child       = child_q;
   assign m_place       = place_q;
   assign m_of_write    = write_fault;
-  assign m_fault       = write_fault | (found & frame_none) | (may_begin & abort);
+  assign m_fault       = write_fault | (found & frame_none) | (may_begin & hold_write);
   assign m_code        = !write_fault ? (found ? `CCHIP_REFIT_RANGE : `CCHIP_REFIT_ABORT) :
       s_write_code == `CCHIP_WRITE_TIMEOUT ? `CCHIP_REFIT_TIMEOUT :
       s_write_code == `CCHIP_WRITE_OWED ? `CCHIP_REFIT_OWED : `CCHIP_REFIT_WRITE;

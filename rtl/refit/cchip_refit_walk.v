@@ -125,8 +125,9 @@ module cchip_refit_walk #(
 
   // ---- the two lines
   reg [1:0] valid_q, reading_q;
-  reg [25:0] item_q[0:1];  // {number, kind}
-  reg [`CCHIP_REFIT_CODE_W-1:0] code_q[0:1];
+  localparam integer CODE_W = `CCHIP_REFIT_CODE_W;
+  reg [51:0] item_q;  // {number, kind}
+  reg [2*CODE_W-1:0] code_q;
   wire take = m_valid & m_ready;
   generate
     for (i = 0; i < 2; i = i + 1) begin : gen_slot
@@ -134,13 +135,13 @@ module cchip_refit_walk #(
       wire asks = (request | refuse) && slot_q == SLOT;
       wire arrives = s_read_valid && s_read_last && s_read_slot == SLOT;
       wire enters = state_q == ENTER && slot_q != SLOT;  // the last request was its own
-      wire leaf = item_q[i][1:0] != 2'd0;
+      wire leaf = item_q[26*i+:2] != 2'd0;
       always @(posedge clk) begin
-        if (asks) item_q[i] <= {line_q, kind_q};
-        if (arrives) code_q[i] <= read_code;
-        else if (asks) code_q[i] <= `CCHIP_REFIT_VISITS;
-        else if (enters && deep_q) code_q[i] <= `CCHIP_REFIT_DEPTH;
-        else if (enters && outside_q) code_q[i] <= `CCHIP_REFIT_OUTSIDE;
+        if (asks) item_q[26*i+:26] <= {line_q, kind_q};
+        if (arrives) code_q[CODE_W*i+:CODE_W] <= read_code;
+        else if (asks) code_q[CODE_W*i+:CODE_W] <= `CCHIP_REFIT_VISITS;
+        else if (enters && deep_q) code_q[CODE_W*i+:CODE_W] <= `CCHIP_REFIT_DEPTH;
+        else if (enters && outside_q) code_q[CODE_W*i+:CODE_W] <= `CCHIP_REFIT_OUTSIDE;
         if (rst || start) begin
           busy_q[i]  <= 1'b0;
           valid_q[i] <= 1'b0;
@@ -155,13 +156,13 @@ module cchip_refit_walk #(
   endgenerate
 
   // ---- the descent
+  wire [CODE_W-1:0] node_code = slot_q ? code_q[0+:CODE_W] : code_q[CODE_W+:CODE_W];
   wire node_arrives = s_read_valid && s_read_last && s_read_slot != slot_q;
   always @(posedge clk) begin
     full_q    <= ~start && {1'b0, visited_q} + 25'd1 >= s_lines;
-    bad_q     <= code_q[~slot_q] != `CCHIP_REFIT_OK;
-    deep_q    <= state_q == CHECK && code_q[~slot_q] == `CCHIP_REFIT_OK && {25'd0, depth_q} == DEEPEST;
-    outside_q <= state_q == CHECK && code_q[~slot_q] == `CCHIP_REFIT_OK &&
-        (new_first <= line_q || new_last >= s_lines);
+    bad_q     <= node_code != `CCHIP_REFIT_OK;
+    deep_q    <= node_code == `CCHIP_REFIT_OK && {25'd0, depth_q} == DEEPEST;
+    outside_q <= node_code == `CCHIP_REFIT_OK && (new_first <= line_q || new_last >= s_lines);
     if (rst) head_q <= 1'b0;
     else if (start) begin
       line_q    <= s_root;
@@ -203,8 +204,9 @@ module cchip_refit_walk #(
     else if (start) state_q <= ASK;
     else
       case (state_q)
-        ASK: if (refuse) state_q <= STOP;
- else if (request) state_q <= kind_q == 2'd0 ? NODE : NEXT;
+        ASK:
+        if (refuse) state_q <= STOP;
+        else if (request) state_q <= kind_q == 2'd0 ? NODE : NEXT;
         NODE: if (node_arrives) state_q <= CHECK;
         CHECK: state_q <= ENTER;
         ENTER: state_q <= bad_q | deep_q | outside_q ? STOP : ASK;
@@ -213,9 +215,9 @@ module cchip_refit_walk #(
         default: ;
       endcase
   end
-  assign m_valid      = valid_q[head_q];
-  assign {m_line, m_kind} = item_q[head_q];
-  assign m_code       = code_q[head_q];
+  assign m_valid = valid_q[head_q];
+  assign {m_line, m_kind} = head_q ? item_q[51:26] : item_q[25:0];
+  assign m_code       = head_q ? code_q[CODE_W+:CODE_W] : code_q[0+:CODE_W];
   assign reading      = |reading_q;
   assign m_read_valid = read_q;
   assign m_read_slot  = read_slot_q;
