@@ -14,8 +14,8 @@
 //                each level in work, so the size of an object does not matter; beside them those of
 //                all children so far. The stored volumes are rounded too much to compute those of
 //                the node above from them
-//   memory       the ports are those of a client of cchip_axi_read (slots 0, 1) and cchip_axi_write;
-//                two reads and a write in flight
+//   memory       the ports are those of a client of cchip_axi_read (slots 0, 1) and of
+//                cchip_axi_write; two reads and a write in flight
 //   end          m_code, m_line: the current line, or the node that was finished or written, if the
 //                error is its own; m_lines: lines read. Errors count in the order of the descent,
 //                that of a line read ahead when it becomes the current one. What is outstanding is
