@@ -65,9 +65,12 @@ traversal/cchip_traversal_contexts.v
 traversal/cchip_traversal_fetch.v
 traversal/cchip_traversal.v
 traversal/cchip_broad_phase.v
+refit/cchip_refit_axes.v
 refit/cchip_refit_leaf.v
 refit/cchip_refit_frame.v
 refit/cchip_refit_volume.v
+refit/cchip_refit_node.v
+refit/cchip_refit_walk.v
 refit/cchip_refit.v
 refit/cchip_refit_axi.v
 transform/cchip_leaf_sequencer.v

@@ -164,9 +164,12 @@ STIMULI = {
     "cchip_leaf_feed": ("m_begin_ready = 1;", "s_leaf_valid = 1; s_leaf_valid <= #2 0;", "m_valid"),  # room for two
     "cchip_refit": ("s_lines = 4; s_root = 1;", "s_valid = 1; s_valid <= #2 0;", "m_read_valid"),
     "cchip_refit_axi": ("s_lines = 4; s_root = 1;", "s_valid = 1; s_valid <= #2 0;", "m_axi_arvalid"),
+    "cchip_refit_axes": ("", "place = 1;", "axes"),
     "cchip_refit_leaf": ("s_line = {1024{1'b1}};", "s_axes = 1;", "m_least"),
     "cchip_refit_frame": ("", "search = 1; search <= #2 0;", "m_done"),
     "cchip_refit_volume": ("", "s_valid = 1;", "m_valid"),
+    "cchip_refit_node": ("s_node = 5;", "start = 1; start <= #2 0;", "idle"),
+    "cchip_refit_walk": ("s_lines = 4; go = 1;", "start = 1; start <= #2 0;", "m_read_valid"),
     "cchip_query_ring": ("", "enable = 1; producer = 1;", "m_read_valid"),
     "cchip_record_ring": ("size_log2 = 4; tick;", "s_valid = 1;", "m_valid"),
     "cchip_calc_result": ("repeat (8) tick;", "s_end_valid = 1;", "m_leaf_valid"),

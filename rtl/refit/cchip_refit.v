@@ -7,19 +7,28 @@
 //   order        children before their node, by descent from the root: the kind of a line stands in
 //                its parent, so a pass over the lines in the order of their numbers could not tell
 //                a leaf from a node. Every line is read once, every node is written once
-//   bounds       those of a node's children lie in a block RAM until the node is written, four for
-//                each level in work, so the size of an object does not matter. The stored volumes
-//                are rounded too much to compute those of the node above from them
-//   memory       the ports are those of a client of cchip_axi_read (slot 0) and cchip_axi_write
-//   end          m_code, m_line: the current line, m_lines: lines read. After an error a part of
-//                the nodes is new, the others are old: no query may use the image
+//   overlap      three parts work at once: cchip_refit_walk reads up to two lines ahead of the
+//                current one, vertices of the current leaf pass here, cchip_refit_node finishes the
+//                node whose children were done last, and its write waits for its answer meanwhile
+//   bounds       those of a node's children lie in a block RAM until the node is finished, four for
+//                each level in work, so the size of an object does not matter; beside them those of
+//                all children so far. The stored volumes are rounded too much to compute those of
+//                the node above from them
+//   memory       the ports are those of a client of cchip_axi_read (slots 0, 1) and of
+//                cchip_axi_write; two reads and a write in flight
+//   end          m_code, m_line: the current line, or the node that was finished or written, if the
+//                error is its own; m_lines: lines read. Errors count in the order of the descent,
+//                that of a line read ahead when it becomes the current one. What is outstanding is
+//                awaited first. After an error a part of the nodes is new, the others are old: no
+//                query may use the image
 //   silence      each wait for memory lasts `limit` clocks (cchip_timeout) at most; it must exceed
 //                those of the masters. What is outstanding then is waited for in the background: a
 //                command that comes before it ends is answered with OWED
-//   abort        ends the refit before the next request; what is outstanding is awaited first
-//   time         13 vertices + beats + 20 clocks a leaf, 27 children + step + 2 beats + 42 a node,
-//                with beats of 512 / DATA_W and memory that answers at once
-//   cuts         every path: each output is a flip-flop or decoded from the state
+//   abort        ends the refit before it takes another line or begins another write
+//   time         without waits 13 vertices + 2 clocks a leaf, 17 a node (cchip_refit_node takes
+//                longer, beside them); waits: docs/modules/cchip_refit.md
+//   cuts         every path: each output is a flip-flop, decoded from the state or chosen between
+//                flip-flops
 //   reset        must reset the masters too; memory may hold a part of the new nodes
 module cchip_refit #(
     // levels of nodes in work, leaves not included; a tree of the library has 47 at most; legal:
@@ -46,8 +55,11 @@ module cchip_refit #(
     output wire [                   23:0] m_lines,        // lines read
     // ---- reads
     output wire                           m_read_valid,   // a read; there is no ready
+    output wire                           m_read_slot,    // its slot
     output wire [                   31:0] m_read_line,    // its address / 64
-    input  wire                           s_read_valid,   // a beat of its answer
+    input  wire                           s_read_valid,   // a beat of an answer
+    input  wire                           s_read_slot,    // its slot
+    input  wire [                    2:0] s_read_beat,    // its number
     input  wire                           s_read_last,    // the last one
     input  wire [ `CCHIP_READ_CODE_W-1:0] s_read_code,    // with it, the code of cchip_axi_read
     input  wire [             DATA_W-1:0] s_read_data,    // the beat
@@ -62,9 +74,7 @@ module cchip_refit #(
     input  wire [`CCHIP_WRITE_CODE_W-1:0] s_write_code    // its code, of cchip_axi_write
 );
 
-  localparam integer LEVEL_W = $clog2(LEVELS);
-  localparam [31:0] LAST_BEAT = 512 / DATA_W - 1;
-  localparam [31:0] DEEPEST = LEVELS;
+  localparam integer LEVEL_W = LEVELS == 2 ? 2 : $clog2(LEVELS);
   localparam integer FRAME_W = 24 + 24 + 8 + 2 + 1 + 2;
   localparam [4:0] EXTENT_MAX = 5'd24;
 
@@ -73,35 +83,65 @@ module cchip_refit #(
                 cchip_error_refit_DATA_W_must_be_64_128_256_or_512)
 
   localparam [3:0] IDLE = 4'd0;
-  localparam [3:0] LINE = 4'd1;  // the current line is requested
-  localparam [3:0] READ = 4'd2;  // it comes
-  localparam [3:0] NODE = 4'd3;  // it is a node
-  localparam [3:0] LEAF = 4'd4;  // or a leaf
-  localparam [3:0] CHILD = 4'd5;  // a child becomes the current line
-  localparam [3:0] PASS = 4'd6;  // intervals pass
-  localparam [3:0] NEXT = 4'd7;  // a child is done
-  localparam [3:0] UNION = 4'd8;  // all are
-  localparam [3:0] SEARCH = 4'd9;  // for the step
-  localparam [3:0] FILL = 4'd10;  // absent children
-  localparam [3:0] WRITE = 4'd11;
-  localparam [3:0] ANSWER = 4'd12;
-  localparam [3:0] DONE = 4'd13;
-  reg [3:0] state_q;
-
-  // ---- passes: of all vertices of a leaf, of the bounds of all children direction by direction,
-  // of all directions child by child
-  localparam [1:0] VERTICES = 2'd0;
-  localparam [1:0] CHILDREN = 2'd1;
-  localparam [1:0] VOLUMES = 2'd2;
+  localparam [3:0] TAKE = 4'd1;  // the next line becomes the current one
+  localparam [3:0] LINE = 4'd2;  // it is here
+  localparam [3:0] LEAF = 4'd3;  // its vertices pass
+  localparam [3:0] UNION = 4'd4;  // all children are done
+  localparam [3:0] RISE = 4'd5;  // bounds of the node pass
+  localparam [3:0] NEXT = 4'd6;  // it is the child of the node above that is done
+  localparam [3:0] ENDED = 4'd7;  // what is in work or outstanding comes to its end
+  localparam [3:0] DONE = 4'd8;
+  reg [3:0] state_q, state_d;
+  wire rests = state_q == IDLE || state_q == DONE;
 
   // ---- the refit
   reg [31:0] base_q;
   reg [24:0] lines_q;
   reg [23:0] line_q;  // current
   reg [1:0] kind_q;  // of it
+  reg [511:0] data_q;  // what is in it
   reg [23:0] visited_q;
-  reg [`CCHIP_REFIT_CODE_W-1:0] code_q;
+  reg [`CCHIP_REFIT_CODE_W-1:0] code_q, line_code_q;
   reg abort_q;
+  // of a node that is finished, or was
+  reg fault_q, fault_write_q;
+  reg [`CCHIP_REFIT_CODE_W-1:0] fault_code_q;
+  reg [23:0] fault_line_q;
+
+  // ---- the lines in the order of the descent
+  reg ready_q, done_q;
+  wire accept = ready_q & s_valid;
+  wire line_valid, reading;
+  wire [23:0] new_line;
+  wire [1:0] new_kind;
+  wire [`CCHIP_REFIT_CODE_W-1:0] new_code;
+  wire [511:0] new_data;
+  wire take = state_q == TAKE && !abort_q && line_valid;
+  cchip_refit_walk #(.LEVELS(LEVELS), .DATA_W(DATA_W)) u_walk (
+      .clk         (clk),
+      .rst         (rst),
+      .start       (accept),
+      .go          (!rests && state_q != ENDED && !abort_q),
+      .s_base      (base_q),
+      .s_lines     (lines_q),
+      .s_root      (s_root),
+      .m_valid     (line_valid),
+      .m_ready     (take),
+      .m_line      (new_line),
+      .m_kind      (new_kind),
+      .m_code      (new_code),
+      .m_data      (new_data),
+      .reading     (reading),
+      .m_read_valid(m_read_valid),
+      .m_read_slot (m_read_slot),
+      .m_read_line (m_read_line),
+      .s_read_valid(s_read_valid),
+      .s_read_slot (s_read_slot),
+      .s_read_beat (s_read_beat),
+      .s_read_last (s_read_last),
+      .s_read_code (s_read_code),
+      .s_read_data (s_read_data)
+  );
 
   // ---- the node in work, and those above it
   reg [23:0] node_q, first_q;
@@ -112,340 +152,306 @@ module cchip_refit #(
   `CCHIP_LUT_RAM
   reg [FRAME_W-1:0] stack[0:(1<<LEVEL_W)-1];
   reg [FRAME_W-1:0] above_q;  // the node above
-  wire [1:0] above_index = above_q[1:0];
   wire [6:0] level = depth_q - 7'd1;
   wire [6:0] level_above = depth_q - 7'd2;
-  wire push = state_q == NODE;
+  wire last_child = index_q == others_q;
+  wire push = state_q == LINE && kind_q == 2'd0;
+  wire pop = state_q == RISE && state_d == NEXT;
   always @(posedge clk) begin
     if (push)
       stack[level[LEVEL_W-1:0]] <= {node_q, first_q, kinds_q, others_q, cut_exponent_q, index_q};
     above_q <= stack[level_above[LEVEL_W-1:0]];
   end
 
-  // ---- the line as it was read, or is written
-  reg [511:0] data_q;
-  wire [511:0] shifted;
-  generate
-    if (DATA_W == 512) begin : gen_whole
-      assign shifted = s_read_data;
-    end else begin : gen_beats
-      assign shifted = {s_read_valid ? s_read_data : {DATA_W{1'b0}}, data_q[511:DATA_W]};
-    end
-  endgenerate
-  wire [23:0] new_first = data_q[`CCHIP_NODE_LINE_FIRST];
-  wire [1:0] new_others = data_q[`CCHIP_NODE_LINE_CHILDREN];
-  wire [24:0] new_last = {1'b0, new_first} + {23'd0, new_others};
-  wire leaf_quad = kind_q == 2'd3;
-
-  // ---- passes, clock 0: direction, and vertex or child. Directions 0..2 are places 0..2, those
-  // with cuts 6..15
-  reg run_q;
-  reg [1:0] mode_q;
+  // ---- passes, clock 0: place of a direction, and vertex. A leaf's vertices pass direction by
+  // direction, or what is stored of a node
+  reg run_q, rise_q, conflict_q;
   reg [3:0] place_q;
-  reg [2:0] item_q, last_item_q;
-  reg [2:0] pause_q;  // the box of a child is to be there before its cuts
-  reg [3:0] drain_q;
-  wire start = (state_q == LEAF && data_q[`CCHIP_LEAF_LINE_EXTENT] <= EXTENT_MAX) ||
-      state_q == UNION;
-  wire start_volumes;
-  wire by_child = mode_q == VOLUMES;
-  wire last_item = item_q == last_item_q;
+  reg [2:0] vertex_q, last_vertex_q;
+  wire node_idle, node_boxes, node_reads;
+  wire [LEVEL_W-1:0] node_level;
+  wire [1:0] node_child;
+  wire small_leaf = data_q[`CCHIP_LEAF_LINE_EXTENT] <= EXTENT_MAX;
+  wire start_leaf = state_q == LINE && kind_q != 2'd0 && line_code_q == `CCHIP_REFIT_OK &&
+      small_leaf && !conflict_q;
+  wire start_rise = state_q == UNION && !abort_q && !fault_q && node_idle;
+  wire last_vertex = vertex_q == last_vertex_q;
   wire last_place = place_q == 4'd15;
-  wire [3:0] next_place = place_q == 4'd2 ? 4'd6 : last_place ? 4'd0 : place_q + 4'd1;
-  wire issue = run_q && pause_q == 3'd0;
-  wire last_issue = issue && last_item && last_place;
+  wire last_issue = run_q && last_vertex && last_place;
   always @(posedge clk) begin
-    if (start || start_volumes) begin
-      mode_q      <= start_volumes ? VOLUMES : state_q == UNION ? CHILDREN : VERTICES;
-      place_q     <= 4'd0;
-      item_q      <= 3'd0;
-      pause_q     <= 3'd0;
-      last_item_q <= start_volumes || state_q == UNION ? {1'b0, others_q} :
-          kind_q == 2'd1 ? 3'd2 : kind_q == 2'd2 ? 3'd5 : 3'd3;
+    // bounds of the node that is finished are needed yet; those of a child are read faster than a
+    // leaf stores its own
+    conflict_q <= node_level == level[LEVEL_W-1:0] &&
+        (node_boxes || (node_reads && node_child < index_q));
+    if (start_leaf || start_rise) begin
+      rise_q        <= start_rise;
+      place_q       <= 4'd0;
+      vertex_q      <= 3'd0;
+      last_vertex_q <= start_rise ? 3'd0 : kind_q == 2'd1 ? 3'd2 : kind_q == 2'd2 ? 3'd5 : 3'd3;
     end else if (run_q) begin
-      pause_q <= pause_q != 3'd0 ? pause_q - 3'd1 : by_child && place_q == 4'd2 ? 3'd4 : 3'd0;
-      if (issue) begin
-        if (by_child || last_item) place_q <= next_place;
-        if (by_child ? last_place : 1'b1) item_q <= last_item ? 3'd0 : item_q + 3'd1;
-      end
+      vertex_q <= last_vertex ? 3'd0 : vertex_q + 3'd1;
+      if (last_vertex) place_q <= place_q == 4'd2 ? 4'd6 : place_q + 4'd1;
     end
-    drain_q <= run_q ? 4'd13 : drain_q - {3'd0, drain_q != 4'd0};
     if (rst) run_q <= 1'b0;
-    else run_q <= start | start_volumes | (run_q & ~last_issue);
+    else run_q <= start_leaf | start_rise | (run_q & ~last_issue & ~rests);
   end
-  wire pass_done = ~run_q && drain_q == 4'd1;
+  wire [5:0] axes;
+  cchip_refit_axes u_axes (
+      .place(place_q),
+      .axes (axes)
+  );
 
-  // {negated, used} axes of the direction at a place
-  function [5:0] axes_of(input [3:0] place);
-    case (place)
-      4'd0: axes_of = 6'b000_001;
-      4'd1: axes_of = 6'b000_010;
-      4'd2: axes_of = 6'b000_100;
-      4'd6: axes_of = 6'b000_011;
-      4'd7: axes_of = 6'b010_011;
-      4'd8: axes_of = 6'b000_101;
-      4'd9: axes_of = 6'b100_101;
-      4'd10: axes_of = 6'b000_110;
-      4'd11: axes_of = 6'b100_110;
-      4'd12: axes_of = 6'b000_111;
-      4'd13: axes_of = 6'b100_111;
-      4'd14: axes_of = 6'b010_111;
-      default: axes_of = 6'b001_111;
-    endcase
-  endfunction
-
-  // ---- clocks 1..7: {axes, place, item, first, last item}
-  localparam integer CONTROL_W = 6 + 4 + 3 + 2;
+  // ---- clocks 1..7: {levels, child, rise, stored, place, first, last vertex}. Bounds are stored
+  // as those of a child, of the node in work or above it
+  localparam integer CONTROL_W = LEVEL_W + LEVEL_W + 2 + 1 + 1 + 4 + 2;
+  wire [CONTROL_W-1:0] control = {
+    level_above[LEVEL_W-1:0],
+    level[LEVEL_W-1:0],
+    rise_q ? above_q[1:0] : index_q,
+    rise_q,
+    !rise_q || depth_q != 7'd1,
+    place_q,
+    vertex_q == 3'd0,
+    last_vertex
+  };
   reg [CONTROL_W-1:0] control_q1, control_q2, control_q3, control_q4, control_q5, control_q6;
   reg [6:1] valid_q;
   always @(posedge clk) begin
-    control_q1 <= {axes_of(place_q), place_q, item_q, item_q == 3'd0, last_item};
+    control_q1 <= control;
     control_q2 <= control_q1;
     control_q3 <= control_q2;
     control_q4 <= control_q3;
     control_q5 <= control_q4;
     control_q6 <= control_q5;
-    valid_q    <= rst ? 6'd0 : {valid_q[5:1], issue};
+    valid_q    <= rst ? 6'd0 : {valid_q[5:1], run_q};
   end
-  wire [5:0] axes6 = control_q6[9+:6];
-  wire [3:0] place6 = control_q6[5+:4];
+  wire [LEVEL_W-2:0] even4 = control_q4[11+:LEVEL_W-1];
+  wire [LEVEL_W-2:0] odd4 = control_q4[11+LEVEL_W+:LEVEL_W-1];
+  wire [LEVEL_W-1:0] above6, level6;
+  wire [1:0] child6;
+  wire rise6, stored6, first6, last6;
+  wire [3:0] place6;
+  assign {above6, level6, child6, rise6, stored6, place6, first6, last6} = control_q6;
 
   wire [51:0] leaf_least, leaf_greatest;
   cchip_refit_leaf u_leaf (
       .clk       (clk),
       .s_line    (data_q),
-      .s_quad    (leaf_quad),
-      .s_vertex  (item_q),
-      .s_axes    (axes_of(place_q)),
+      .s_quad    (kind_q == 2'd3),
+      .s_vertex  (vertex_q),
+      .s_axes    (axes),
       .m_least   (leaf_least),
       .m_greatest(leaf_greatest)
   );
 
-  // ---- bounds of the children of the nodes in work
-  wire [103:0] stored;
-  reg store_q;
-  reg [LEVEL_W-1:0] store_level_q;
+  // ---- bounds of the children of the nodes in work; and of all children so far, levels of even
+  // and of odd numbers apart: those of a node are read together with those of the node above
+  reg [51:0] least_q, greatest_q, all_least_q, all_greatest_q;
+  reg store_q, store_all_q;
+  reg [LEVEL_W-1:0] store_level_q, all_level_q;
   reg [1:0] store_child_q;
-  reg [3:0] store_place_q;
-  reg [51:0] least_q, greatest_q;
+  reg [3:0] store_place_q, all_place_q;
+  wire [103:0] bounds, even, odd;
+  wire [3:0] node_place;
   cchip_block_ram #(.WIDTH(104), .WORDS(1), .ADDR_W(LEVEL_W + 6)) u_bounds (
       .clk       (clk),
       .write     (store_q),
       .write_addr({store_level_q, store_child_q, store_place_q}),
       .write_data({greatest_q, least_q}),
-      .read_addr ({level[LEVEL_W-1:0], control_q4[3:2], control_q4[5+:4]}),
-      .read_data (stored)
+      .read_addr ({node_level, node_child, node_place}),
+      .read_data (bounds)
+  );
+  cchip_block_ram #(.WIDTH(104), .WORDS(1), .ADDR_W(LEVEL_W + 3)) u_even (
+      .clk       (clk),
+      .write     (store_all_q && !all_level_q[0]),
+      .write_addr({all_level_q[LEVEL_W-1:1], all_place_q}),
+      .write_data({all_greatest_q, all_least_q}),
+      .read_addr ({even4, control_q4[5:2]}),
+      .read_data (even)
+  );
+  cchip_block_ram #(.WIDTH(104), .WORDS(1), .ADDR_W(LEVEL_W + 3)) u_odd (
+      .clk       (clk),
+      .write     (store_all_q && all_level_q[0]),
+      .write_addr({all_level_q[LEVEL_W-1:1], all_place_q}),
+      .write_data({all_greatest_q, all_least_q}),
+      .read_addr ({odd4, control_q4[5:2]}),
+      .read_data (odd)
   );
 
-  // ---- clock 7: the least and the greatest of all items
-  wire [51:0] least6 = mode_q == VERTICES ? leaf_least : stored[51:0];
-  wire [51:0] greatest6 = mode_q == VERTICES ? leaf_greatest : stored[103:52];
+  // ---- clock 7: the least and the greatest of all vertices; 8: of all children so far
+  wire [103:0] own6 = level6[0] ? odd : even;
+  wire [51:0] least6 = rise6 ? own6[51:0] : leaf_least;
+  wire [51:0] greatest6 = rise6 ? own6[103:52] : leaf_greatest;
+  reg [103:0] old_q;
   reg whole_q;  // of a node's axis
   always @(posedge clk) begin
-    if (control_q6[1] || $signed(least6) < $signed(least_q)) least_q <= least6;
-    if (control_q6[1] || $signed(greatest6) > $signed(greatest_q)) greatest_q <= greatest6;
+    if (first6 || $signed(least6) < $signed(least_q)) least_q <= least6;
+    if (first6 || $signed(greatest6) > $signed(greatest_q)) greatest_q <= greatest6;
+    old_q         <= level6[0] != rise6 ? odd : even;
+    store_level_q <= rise6 ? above6 : level6;
+    store_child_q <= child6;
     store_place_q <= place6;
-    store_level_q <= mode_q == VERTICES ? level[LEVEL_W-1:0] : level_above[LEVEL_W-1:0];
-    store_child_q <= mode_q == VERTICES ? index_q : above_index;
-    if (rst) begin
-      store_q <= 1'b0;
-      whole_q <= 1'b0;
-    end else begin
-      store_q <= valid_q[6] && control_q6[0] && (mode_q == VERTICES ||
-          (mode_q == CHILDREN && depth_q != 7'd1));
-      whole_q <= valid_q[6] && control_q6[0] && mode_q == CHILDREN && place6 < 4'd3;
-    end
+    all_least_q <= store_child_q != 2'd0 && $signed(old_q[51:0]) < $signed(least_q) ?
+        old_q[51:0] : least_q;
+    all_greatest_q <= store_child_q != 2'd0 && $signed(old_q[103:52]) > $signed(greatest_q) ?
+        old_q[103:52] : greatest_q;
+    all_level_q   <= store_level_q;
+    all_place_q   <= store_place_q;
+    store_q       <= ~rst & valid_q[6] & last6 & stored6;
+    store_all_q   <= ~rst & store_q;
+    whole_q       <= ~rst & valid_q[6] & rise6 && place6 < 4'd3;
   end
 
-  // ---- origin and step, then volumes
-  wire search = state_q == PASS && pass_done && mode_q == CHILDREN;
-  wire frame_done, frame_none;
-  wire [53:0] origin;
-  wire [4:0] step;
-  cchip_refit_frame u_frame (
-      .clk       (clk),
-      .rst       (rst),
-      .s_valid   (whole_q),
-      .s_axis    (store_place_q[1:0]),
-      .s_least   (least_q),
-      .s_greatest(greatest_q),
-      .search    (search),
-      .m_done    (frame_done),
-      .m_none    (frame_none),
-      .m_origin  (origin),
-      .m_step    (step)
-  );
-  assign start_volumes = state_q == SEARCH && frame_done && !frame_none;
-  wire volume_valid, volume_axis;
-  wire [13:0] volume;
-  cchip_refit_volume u_volume (
+  // ---- nodes of which all children are done
+  wire fault, of_write, node_waits, writing, begins;
+  wire [`CCHIP_REFIT_CODE_W-1:0] fault_code;
+  wire [23:0] fault_line, written;
+  cchip_refit_node #(.LEVEL_W(LEVEL_W), .DATA_W(DATA_W)) u_node (
       .clk           (clk),
       .rst           (rst),
-      .s_origin      (origin),
-      .s_step        (step),
+      .drop          (rests || fault_q),
+      .hold_write    (abort_q),
+      .start         (start_rise),
+      .s_level       (level[LEVEL_W-1:0]),
+      .s_base        (base_q),
+      .s_node        (node_q),
+      .s_first       (first_q),
+      .s_kinds       (kinds_q),
+      .s_others      (others_q),
       .s_cut_exponent(cut_exponent_q),
-      .s_valid       (valid_q[6] && by_child),
-      .s_axis        (place6 < 4'd3),
-      .s_axes        (axes6),
-      .s_least       (stored[51:0]),
-      .s_greatest    (stored[103:52]),
-      .m_valid       (volume_valid),
-      .m_axis        (volume_axis),
-      .m_data        (volume)
+      .idle          (node_idle),
+      .s_valid       (whole_q),
+      .s_axis        (store_place_q[1:0]),
+      .s_least       (least_q),
+      .s_greatest    (greatest_q),
+      .boxes         (node_boxes),
+      .reads         (node_reads),
+      .m_level       (node_level),
+      .m_child       (node_child),
+      .m_place       (node_place),
+      .s_bounds      (bounds),
+      .m_fault       (fault),
+      .m_code        (fault_code),
+      .m_line        (fault_line),
+      .m_of_write    (of_write),
+      .waits         (node_waits),
+      .writing       (writing),
+      .begins        (begins),
+      .m_written     (written),
+      .m_write_valid (m_write_valid),
+      .m_write_ready (m_write_ready),
+      .m_write_last  (m_write_last),
+      .m_write_line  (m_write_line),
+      .m_write_beat  (m_write_beat),
+      .m_write_data  (m_write_data),
+      .s_write_valid (s_write_valid),
+      .s_write_code  (s_write_code)
   );
-  // they come in the order of their bits; absent children are 0
-  reg [407:0] volumes_q;
-  reg [1:0] fill_q;  // children that are there, then those that have got zeros too
+  // the first error counts, but that of a write, which is of an earlier node, before all
+  reg [23:0] node_visited_q;  // lines read when the node was done
   always @(posedge clk) begin
-    if (volume_valid && volume_axis) volumes_q <= {volume, volumes_q[407:14]};
-    else if (volume_valid) volumes_q <= {volume[5:0], volumes_q[407:6]};
-    else if (state_q == FILL && fill_q != 2'd3) volumes_q <= {102'd0, volumes_q[407:102]};
-    fill_q <= state_q == FILL ? fill_q + 2'd1 : others_q;
-  end
-  wire [511:0] node = {
-    8'd0, volumes_q, 2'd0, cut_exponent_q, others_q, kinds_q, first_q, step, origin
-  };
-
-  // ---- memory. A read or write that is given up stays open until its answer comes
-  reg reading_q, writing_q, offered_q;
-  reg [2:0] beat_q;
-  reg read_q;
-  reg [31:0] address_q;
-  wire write_step = offered_q & m_write_ready;
-  wire last_beat = beat_q == LAST_BEAT[2:0];
-  wire begin_write = state_q == FILL && fill_q == 2'd3 && !abort_q;
-  always @(posedge clk) begin
-    if (begin_write) data_q <= node;
-    else if (s_read_valid || write_step) data_q <= shifted;
-    if (begin_write) beat_q <= 3'd0;
-    else if (write_step) beat_q <= beat_q + 3'd1;
-    if (state_q == LINE || begin_write)
-      address_q <= base_q + {8'd0, state_q == LINE ? line_q : node_q};
-  end
-  wire request = state_q == LINE && !abort_q && {1'b0, visited_q} + 25'd1 < lines_q;
-  always @(posedge clk)
-    if (rst) begin
-      read_q    <= 1'b0;
-      reading_q <= 1'b0;
-      writing_q <= 1'b0;
-      offered_q <= 1'b0;
-    end else begin
-      read_q    <= request;
-      reading_q <= request | (reading_q & ~(s_read_valid & s_read_last));
-      writing_q <= begin_write | (writing_q & ~s_write_valid);
-      offered_q <= begin_write | (offered_q & ~(write_step & last_beat));
+    if (start_rise) node_visited_q <= visited_q;
+    if (fault && (of_write || !fault_q)) begin
+      fault_write_q <= of_write;
+      fault_code_q  <= fault_code;
+      fault_line_q  <= fault_line;
     end
+    fault_q <= ~rst && !rests && (fault_q | fault);
+  end
+
+  // ---- silence
   wire expired;
   wire [31:0] elapsed;
-  wire waits = state_q == READ || state_q == WRITE || state_q == ANSWER;
+  wire waits = (state_q == TAKE && !line_valid) || node_waits || (state_q == ENDED && node_idle);
+  wire progress = begins | s_write_valid | (s_read_valid & s_read_last);
   cchip_timeout #(.DEFAULT(4 * `CCHIP_MEMORY_LIMIT_DEFAULT)) u_timeout (
       .clk    (clk),
-      .restart(rst | ~waits),
+      .restart(rst | ~waits | progress),
       .limit  (limit),
       .elapsed(elapsed),
       .expired(expired)
   );
 
   // ---- what is next
-  reg ready_q, done_q;
-  wire read_end = s_read_valid & s_read_last;
-  wire [`CCHIP_REFIT_CODE_W-1:0] read_code = s_read_code == `CCHIP_READ_OK ? `CCHIP_REFIT_OK :
-      s_read_code == `CCHIP_READ_TIMEOUT ? `CCHIP_REFIT_TIMEOUT :
-      s_read_code == `CCHIP_READ_OWED ? `CCHIP_REFIT_OWED : `CCHIP_REFIT_READ;
-  wire [`CCHIP_REFIT_CODE_W-1:0] write_code = s_write_code == `CCHIP_WRITE_OK ? `CCHIP_REFIT_OK :
-      s_write_code == `CCHIP_WRITE_TIMEOUT ? `CCHIP_REFIT_TIMEOUT :
-      s_write_code == `CCHIP_WRITE_OWED ? `CCHIP_REFIT_OWED : `CCHIP_REFIT_WRITE;
+  wire quiet = node_idle & ~writing & ~reading;
   wire bad_command = s_base > 32'hFEFFFFFF || s_lines > 32'h1000000 || s_root == 24'd0 ||
       {8'd0, s_root} >= s_lines;
-  reg [3:0] state_d;
   reg [`CCHIP_REFIT_CODE_W-1:0] code_d;  // of a state that ends the refit
   always @* begin
     state_d = state_q;
-    code_d  = `CCHIP_REFIT_OK;
+    code_d  = code_q;
     case (state_q)
       IDLE:
-      if (ready_q && s_valid) begin
-        code_d = reading_q | writing_q ? `CCHIP_REFIT_OWED :
+      if (accept) begin
+        code_d = reading | writing ? `CCHIP_REFIT_OWED :
             bad_command ? `CCHIP_REFIT_COMMAND : `CCHIP_REFIT_OK;
-        state_d = LINE;
+        state_d = code_d == `CCHIP_REFIT_OK ? TAKE : DONE;
       end
-      LINE: begin
-        code_d  = abort_q ? `CCHIP_REFIT_ABORT : request ? `CCHIP_REFIT_OK : `CCHIP_REFIT_VISITS;
-        state_d = READ;
-      end
-      READ:
-      if (read_end) begin
-        code_d  = read_code;
-        state_d = kind_q == 2'd0 ? NODE : LEAF;
-      end else if (expired) code_d = `CCHIP_REFIT_TIMEOUT;
-      NODE: begin
-        code_d = {25'd0, depth_q} == DEEPEST ? `CCHIP_REFIT_DEPTH :
-            new_first <= line_q || new_last >= lines_q ? `CCHIP_REFIT_OUTSIDE : `CCHIP_REFIT_OK;
-        state_d = CHILD;
-      end
-      LEAF: begin
-        code_d  = start ? `CCHIP_REFIT_OK : `CCHIP_REFIT_LEAF;
-        state_d = PASS;
-      end
-      CHILD: state_d = LINE;
-      PASS:
-      if (pass_done) state_d = mode_q == VERTICES ? NEXT : mode_q == CHILDREN ? SEARCH : FILL;
-      NEXT: state_d = index_q == others_q ? UNION : CHILD;
-      UNION: state_d = PASS;
-      SEARCH:
-      if (frame_done) begin
-        code_d  = frame_none ? `CCHIP_REFIT_RANGE : `CCHIP_REFIT_OK;
-        state_d = PASS;
-      end
-      FILL:
-      if (abort_q) code_d = `CCHIP_REFIT_ABORT;
-      else if (fill_q == 2'd3) state_d = WRITE;
-      WRITE:
-      if (write_step && last_beat) state_d = ANSWER;
-      else if (expired) code_d = `CCHIP_REFIT_TIMEOUT;
-      ANSWER:
-      if (s_write_valid) begin
-        code_d  = write_code;
-        state_d = depth_q == 7'd1 ? DONE : NEXT;
-      end else if (expired) code_d = `CCHIP_REFIT_TIMEOUT;
+      TAKE: if (take) state_d = LINE;
+      LINE:
+      if (line_code_q != `CCHIP_REFIT_OK) code_d = line_code_q;
+      else if (kind_q == 2'd0) state_d = TAKE;
+      else if (!small_leaf) code_d = `CCHIP_REFIT_LEAF;
+      else if (!conflict_q) state_d = LEAF;
+      LEAF: if (last_issue) state_d = last_child ? UNION : TAKE;
+      NEXT: state_d = last_child ? UNION : TAKE;
+      UNION: if (start_rise) state_d = RISE;
+      RISE: if (last_issue) state_d = depth_q == 7'd1 ? ENDED : NEXT;
+      ENDED: if (quiet) state_d = DONE;
       default: if (m_ready) state_d = IDLE;
     endcase
-    if (code_d != `CCHIP_REFIT_OK) state_d = DONE;
+    if (!rests && state_q != ENDED) begin
+      if (abort_q && (state_q == TAKE || state_q == UNION)) code_d = `CCHIP_REFIT_ABORT;
+      if (code_d != `CCHIP_REFIT_OK || fault_q) state_d = ENDED;
+    end
+    if (!rests && expired) begin
+      if (code_d == `CCHIP_REFIT_OK) code_d = `CCHIP_REFIT_TIMEOUT;
+      state_d = DONE;
+    end
   end
   always @(posedge clk) begin
     case (state_q)
       IDLE: begin
         base_q    <= s_base;
         lines_q   <= s_lines[24:0];
-        line_q    <= code_d == `CCHIP_REFIT_OK ? s_root : 24'd0;
-        kind_q    <= 2'd0;
+        line_q    <= 24'd0;
         visited_q <= 24'd0;
         depth_q   <= 7'd0;
       end
-      LINE: if (request) visited_q <= visited_q + 24'd1;
-      NODE: begin
+      TAKE: begin
+        line_q      <= new_line;
+        kind_q      <= new_kind;
+        data_q      <= new_data;
+        line_code_q <= new_code;
+        if ((take && new_code != `CCHIP_REFIT_VISITS) || expired) visited_q <= visited_q + 24'd1;
+      end
+      LINE:
+      if (kind_q == 2'd0) begin
         node_q         <= line_q;
-        first_q        <= new_first;
+        first_q        <= data_q[`CCHIP_NODE_LINE_FIRST];
         kinds_q        <= data_q[`CCHIP_NODE_LINE_KINDS];
-        others_q       <= new_others;
+        others_q       <= data_q[`CCHIP_NODE_LINE_CHILDREN];
         cut_exponent_q <= data_q[`CCHIP_NODE_LINE_CUT_EXPONENT];
         index_q        <= 2'd0;
-        if (code_d == `CCHIP_REFIT_OK) depth_q <= depth_q + 7'd1;
+        depth_q        <= depth_q + 7'd1;
       end
-      CHILD: begin
-        line_q <= first_q + {22'd0, index_q};
-        kind_q <= kinds_q[{index_q, 1'b0}+:2];
-      end
-      NEXT: if (index_q != others_q) index_q <= index_q + 2'd1;
+      LEAF: if (last_issue && !last_child) index_q <= index_q + 2'd1;
+      NEXT: if (!last_child) index_q <= index_q + 2'd1;
       UNION: line_q <= node_q;
-      ANSWER:
-      if (s_write_valid && depth_q != 7'd1) begin
+      RISE:
+      if (pop) begin
         {node_q, first_q, kinds_q, others_q, cut_exponent_q, index_q} <= above_q;
         depth_q <= level;
       end
       default: ;
     endcase
-    if (state_q != DONE) code_q <= code_d;
+    code_q <= rests && !accept ? (state_q == IDLE ? `CCHIP_REFIT_OK : code_q) : code_d;
+    if (state_d == DONE && !rests)
+      if (fault_q) begin
+        code_q <= fault_code_q;
+        line_q <= fault_line_q;
+        if (!fault_write_q) visited_q <= node_visited_q;
+      end else if (expired && writing && code_q == `CCHIP_REFIT_OK) line_q <= written;
     if (rst) begin
       state_q <= IDLE;
       ready_q <= 1'b0;
@@ -458,25 +464,17 @@ module cchip_refit #(
       abort_q <= (abort_q | s_abort) && state_q != IDLE;
     end
   end
-  assign s_ready       = ready_q;
-  assign m_valid       = done_q;
-  assign m_code        = code_q;
-  assign m_line        = line_q;
-  assign m_lines       = visited_q;
-  assign m_read_valid  = read_q;
-  assign m_read_line   = address_q;
-  assign m_write_valid = offered_q;
-  assign m_write_last  = last_beat;
-  assign m_write_line  = address_q;
-  assign m_write_beat  = beat_q;
-  assign m_write_data  = data_q[DATA_W-1:0];
+  assign s_ready = ready_q;
+  assign m_valid = done_q;
+  assign m_code  = code_q;
+  assign m_line  = line_q;
+  assign m_lines = visited_q;
 
-  wire unused = &{1'b0, elapsed, control_q6[4:2], level, level_above};
+  wire unused = &{1'b0, elapsed, level, level_above};
   always @(posedge clk)
     if (!rst) begin
-      `CCHIP_ASSERT(a_depth, {25'd0, depth_q} <= DEEPEST)
-      `CCHIP_ASSERT(a_one, !(reading_q && writing_q))
-      `CCHIP_ASSERT(a_answer, !s_read_valid || reading_q)
+      `CCHIP_ASSERT(a_depth, rests || depth_q <= 7'd64)
+      `CCHIP_ASSERT(a_run, !(start_leaf | start_rise) || !run_q)
     end
 
 endmodule

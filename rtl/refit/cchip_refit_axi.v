@@ -4,7 +4,8 @@
 `include "cchip_assert.vh"
 // cchip_refit_axi: cchip_refit with a cchip_axi_read and a cchip_axi_write of its own, for an AXI4
 // memory. Commands, codes and rules are those of cchip_refit.
-//   traffic      one line at a time: a read or a write, each a burst of a whole line, aligned
+//   traffic      two reads, under IDs 0 and 1, and a write at most in flight, each a burst of a
+//                whole line, aligned
 //   limit        of each read and write. The engine itself waits 4 `limit` + 64 clocks, 2^32 - 1 at
 //                most, longer than its masters need to say that memory is silent; 0: the defaults
 //   outstanding  the answer to a request of this refit, or of an abandoned one, is pending
@@ -46,7 +47,7 @@ module cchip_refit_axi #(
     // ---- memory
     output wire                           m_axi_arvalid,  // AXI4 read address
     input  wire                           m_axi_arready,  // AXI4
-    output wire                           m_axi_arid,     // always 0
+    output wire                           m_axi_arid,     // 0 or 1
     output wire [                   63:0] m_axi_araddr,   // address of a line, bytes
     output wire [                    7:0] m_axi_arlen,    // a whole line: 512 / DATA_W - 1
     output wire [                    2:0] m_axi_arsize,   // AXI4
@@ -107,7 +108,8 @@ module cchip_refit_axi #(
     refit_limit_q <= limit == 32'd0 ? 32'd0 :
         limit[31:29] != 3'd0 ? 32'hFFFFFFFF : {1'b0, limit[28:0], 2'd0} + 32'd64;
 
-  wire read_valid, beat_valid, beat_last;
+  wire read_valid, read_slot, beat_valid, beat_slot, beat_last;
+  wire [2:0] beat;
   wire [31:0] read_line;
   wire [`CCHIP_READ_CODE_W-1:0] beat_code;
   wire [DATA_W-1:0] beat_data;
@@ -132,8 +134,11 @@ module cchip_refit_axi #(
       .m_line       (m_line),
       .m_lines      (m_lines),
       .m_read_valid (read_valid),
+      .m_read_slot  (read_slot),
       .m_read_line  (read_line),
       .s_read_valid (beat_valid),
+      .s_read_slot  (beat_slot),
+      .s_read_beat  (beat),
       .s_read_last  (beat_last),
       .s_read_code  (beat_code),
       .s_read_data  (beat_data),
@@ -148,8 +153,6 @@ module cchip_refit_axi #(
   );
 
   wire read_outstanding, write_outstanding;
-  wire beat_slot;
-  wire [2:0] beat;
   wire [1:0] slots_outstanding;
   cchip_axi_read #(
       .CLIENTS(1),
@@ -160,7 +163,7 @@ module cchip_refit_axi #(
       .rst            (rst),
       .limit          (limit),
       .s_valid        (read_valid),
-      .s_slot         (1'b0),
+      .s_slot         (read_slot),
       .s_line         ({26'd0, read_line}),
       .m_valid        (beat_valid),
       .m_slot         (beat_slot),
@@ -220,7 +223,7 @@ module cchip_refit_axi #(
   );
   assign outstanding = read_outstanding | write_outstanding;
 
-  wire unused = &{1'b0, beat_slot, beat, slots_outstanding, write_beat};
+  wire unused = &{1'b0, slots_outstanding, write_beat};
 
 endmodule
 `default_nettype wire

@@ -5,8 +5,8 @@
 // is: a vertex of such a leaf is off by at most half a step on every axis (docs/hardware/image.md).
 //   numbers      2^-48 of the object's unit, so nothing is lost: half a step of a quad of extent 0
 //                is 1. An extent of at most 24 is the parent's promise
-//   latency      6 clocks; s_line and s_quad must not change on the first 5 of them
-//   throughput   a position per clock
+//   latency      6 clocks
+//   throughput   a position per clock, each of any leaf
 //   cuts         every path: each output is a flip-flop
 //   reset        none
 module cchip_refit_leaf (
@@ -47,6 +47,8 @@ module cchip_refit_leaf (
 
   reg [5:0] axes_q1, axes_q2, axes_q3;
   reg [4:0] shift_q;  // extent + 1: a step of a quad is 2^(extent + 1)
+  reg [71:0] origin_q1, origin_q2;
+  reg [5:0] margin_q1, margin_q2, margin_q3;  // {rounded, half a step is 2 to the power of this}
   wire [152:0] terms;  // along the direction, of each axis
   genvar i;
   generate
@@ -55,7 +57,7 @@ module cchip_refit_leaf (
       reg signed [48:0] shifted_q;
       reg signed [49:0] position_q;
       wire signed [48:0] offset = {{25{offset_q[23]}}, offset_q};
-      wire [49:0] from_centre = {{2{origin[24*i+23]}}, origin[24*i+:24], 24'd0};
+      wire [49:0] from_centre = {{2{origin_q2[24*i+23]}}, origin_q2[24*i+:24], 24'd0};
       wire signed [50:0] position = {position_q[49], position_q};
       always @(posedge clk) begin
         offset_q   <= s_quad ? corner[24*i+:24] : {triangle[20*i+:20], 4'd0};
@@ -75,7 +77,12 @@ module cchip_refit_leaf (
     axes_q2    <= axes_q1;
     axes_q3    <= axes_q2;
     shift_q    <= extent + 5'd1;
-    half_q     <= rounded ? 31'd1 << (s_quad ? extent : extent + 5'd4) : 31'd0;
+    origin_q1  <= origin;
+    origin_q2  <= origin_q1;
+    margin_q1  <= {rounded, s_quad ? extent : extent + 5'd4};
+    margin_q2  <= margin_q1;
+    margin_q3  <= margin_q2;
+    half_q     <= margin_q3[5] ? 31'd1 << margin_q3[4:0] : 31'd0;
     xy_q       <= {terms[50], terms[0+:51]} + {terms[101], terms[51+:51]};
     z_q        <= terms[102+:51];
     weight_q   <= {1'b0, axes_q3[0]} + {1'b0, axes_q3[1]} + {1'b0, axes_q3[2]};

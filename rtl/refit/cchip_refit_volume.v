@@ -5,7 +5,7 @@
 //   box          of each axis both ends in steps from the node's origin, rounded outward; a box is
 //                never flat at -64
 //   cuts         from the corner of the rounded box to the bound, rounded down, 0..7
-//   order        x, y, z; the first direction with cuts at least 5 clocks after z
+//   order        x, y, z; directions without z at least 5 clocks after y, with z 5 after z
 //   numbers      bounds are rounded outward from 2^-48 to 2^-24 first. That loses nothing: steps,
 //                units of cuts and corners are whole multiples of 2^-24
 //   latency      5 clocks; s_origin, s_step and s_cut_exponent must not change meanwhile

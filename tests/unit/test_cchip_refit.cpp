@@ -50,7 +50,7 @@ class RefitBench {
     top_.s_valid = 0;
     top_.s_abort = 0;
     top_.m_ready = 0;
-    read_.reset();
+    reads_ = {};
     write_.clear();
     answer_.reset();
     simulation_.reset();
@@ -92,14 +92,18 @@ class RefitBench {
 
   void step() {
     idle();
-    if (read_ && (how.lost != read_->line || found) && read_->wait-- <= 0 && chance(random_, how.beat)) {
-      const bool last = read_->beat + 1 == beats;
+    const std::optional<std::size_t> slot = next_slot();
+    if (slot && chance(random_, how.beat)) {
+      const Read* read = &*reads_[*slot];
+      const bool last = read->beat + 1 == beats;
       top_.s_read_valid = 1;
+      top_.s_read_slot = static_cast<CData>(*slot);
+      top_.s_read_beat = static_cast<CData>(read->beat);
       top_.s_read_last = last ? 1 : 0;
-      top_.s_read_code = static_cast<CData>(read_->line == how.bad_read ? how.bad_code : 0U);
-      const Line& line = memory.at(index_of(read_->line));
+      top_.s_read_code = static_cast<CData>(read->line == how.bad_read ? how.bad_code : 0U);
+      const Line& line = memory.at(index_of(read->line));
       for (int byte = 0; byte < width / 8; ++byte) {
-        sim::set_bits(top_.s_read_data, 8 * byte, 8, line[read_->beat * width / 8 + static_cast<std::size_t>(byte)]);
+        sim::set_bits(top_.s_read_data, 8 * byte, 8, line[read->beat * width / 8 + static_cast<std::size_t>(byte)]);
       }
     }
     if (answer_ && (how.lost_write != *answer_ || found) && chance(random_, how.beat)) {
@@ -108,13 +112,15 @@ class RefitBench {
     }
     top_.m_write_ready = chance(random_, how.beat) && !stuck ? 1 : 0;
     simulation_.settle();
-    if (top_.s_read_valid != 0 && ++read_->beat == beats) read_.reset();
+    if (top_.s_read_valid != 0 && ++reads_[*slot]->beat == beats) reads_[*slot].reset();
     if (top_.m_read_valid != 0) {
-      REQUIRE(!read_);
+      std::optional<Read>& asked = reads_[top_.m_read_slot];
+      REQUIRE(!asked);
       ++reads;
-      read_ = Read{top_.m_read_line - base, 0,
+      asked = Read{top_.m_read_line - base, 0,
                    how.latency == 0 ? 0 : static_cast<int>(random_() % static_cast<unsigned>(how.latency))};
-      REQUIRE(index_of(read_->line) < memory.size());
+      REQUIRE(index_of(asked->line) < memory.size());
+      if (!reads_[top_.m_read_slot ^ 1U]) older_ = top_.m_read_slot;
     }
     if (top_.s_write_valid != 0) {
       if (top_.s_write_code == 0) memory.at(index_of(*answer_)) = written_;
@@ -159,6 +165,18 @@ class RefitBench {
     int wait;
   };
 
+  /// Slot of the next beat: that of the older read, unless it waits, or unless beats are late and mixed.
+  std::optional<std::size_t> next_slot() {
+    if (!reads_[older_]) older_ ^= 1U;
+    std::array<bool, 2> ready{};
+    for (std::size_t n = 0; n < 2; ++n) {
+      ready[n] = reads_[n] && (how.lost != reads_[n]->line || found) && reads_[n]->wait-- <= 0;
+    }
+    const std::size_t younger = older_ ^ 1U;
+    if (ready[younger] && (!ready[older_] || (how.beat < 100 && chance(random_, 50)))) return younger;
+    return ready[older_] ? std::optional<std::size_t>(older_) : std::nullopt;
+  }
+
   std::size_t index_of(std::uint32_t line) const {
     if (places.empty()) return line;
     const auto place = places.find(line);
@@ -167,6 +185,8 @@ class RefitBench {
 
   void idle() {
     top_.s_read_valid = 0;
+    top_.s_read_slot = static_cast<CData>(random_() % 2);
+    top_.s_read_beat = static_cast<CData>(random_() % 8);
     top_.s_read_last = 0;
     top_.s_read_code = 0;
     top_.s_write_valid = 0;
@@ -178,7 +198,8 @@ class RefitBench {
   sim::Simulation<typename Config::Model>& simulation_;
   typename Config::Model& top_;
   Random& random_;
-  std::optional<Read> read_;
+  std::array<std::optional<Read>, 2> reads_;  ///< of both slots
+  std::size_t older_ = 0;                     ///< slot of the one that was requested first
   std::vector<std::uint32_t> write_;
   std::optional<std::uint32_t> answer_;
   Line written_{};
@@ -257,18 +278,11 @@ struct AnyTree {
     command = {numbers.back() + 1, numbers[1]};
   }
 
-  /// Of the refit that makes `image`, if memory answers at once.
+  /// Clocks of the refit that makes `image`, if memory answers at once.
   std::uint64_t clocks(const std::vector<Line>& image, std::size_t beats) const {
-    std::size_t sum = 0;
-    for (std::size_t n = 1; n < image.size(); ++n) {
-      if (inner[n]) {
-        sum += 27 * (1 + static_cast<std::size_t>(get(image[n], bvh::inner_field::children)));
-        sum += static_cast<std::size_t>(get(image[n], bvh::inner_field::step)) + 2 * beats + 42;
-      } else {
-        sum += 13 * bvh::vertices_in(kinds_[n]) + beats + 20;
-      }
-    }
-    return sum;
+    Schedule at;
+    visit(1, 0, image, beats, at);
+    return at.write_end + 7;
   }
 
   /// Nodes name their children by the numbers of the chip.
@@ -280,6 +294,48 @@ struct AnyTree {
   }
 
  private:
+  /// The clock, counted from the one behind the command, on which what is next may begin, as the datasheet says.
+  struct Schedule {
+    std::uint64_t ask = 0;                   ///< the next request
+    std::uint64_t beat = 0;                  ///< the next beat of a read
+    std::uint64_t take = 0;                  ///< the next line is taken
+    std::array<std::uint64_t, 2> room = {};  ///< requests, for want of a place for their line
+    std::uint64_t finish = 0;                ///< the next node is finished
+    std::uint64_t write_end = 0;             ///< last beat of the last write
+    int level = 0;                           ///< of the node finished last
+    std::uint64_t found = 0, children = 0;   ///< its step is found; its children
+  };
+
+  void visit(std::size_t n, std::uint64_t child, const std::vector<Line>& image, std::size_t beats,
+             Schedule& at) const {
+    const std::uint64_t asked = std::max(at.ask, at.room[0]);
+    at.beat = std::max(asked + 2, at.beat) + beats;
+    const std::uint64_t taken = std::max(at.take, at.beat + (inner[n] ? 2 : 0));
+    at.room = {at.room[1], taken + 1};
+    if (!inner[n]) {
+      at.ask = asked + 2;
+      // a node of the same level may still need the place of its bounds
+      const std::uint64_t free = at.level == level[n] - 1 ? at.found + 16 * std::min(child, at.children) + 2 : 0;
+      at.take = std::max(taken + 1, free) + 13 * bvh::vertices_in(kinds_[n]) + 1;
+      return;
+    }
+    at.ask = at.beat + 2;
+    at.take = taken + 2;
+    const auto first = static_cast<std::size_t>(get(image[n], bvh::inner_field::first));
+    const std::uint64_t children = 1 + static_cast<std::uint64_t>(get(image[n], bvh::inner_field::children));
+    for (std::size_t i = 0; i < children; ++i) {
+      visit(first + i, i, image, beats, at);
+    }
+    const std::uint64_t begun = std::max(at.take, at.finish);
+    at.ask += 2;
+    at.take = begun + 15;
+    at.level = level[n];
+    at.children = children;
+    at.found = begun + 16 + static_cast<std::uint64_t>(get(image[n], bvh::inner_field::step));
+    at.write_end = at.found + 15 * children + 13 + beats;
+    at.finish = at.write_end + 1;
+  }
+
   /// With `edge` boxes are as wide as a node holds with a step of 2^edge, give or take little: at -64 and 63 steps
   /// decides one unit.
   static void make_leaf(Line& line, NodeKind kind, const std::array<std::int32_t, 3>& centre, unsigned spread,
@@ -427,6 +483,14 @@ TEST_CASE("cchip_refit: every fault ends the refit with its code, and the next o
       REQUIRE(end.line == line);
       ++bins[code];
     };
+    // until the end is taken; the last write begins less than 20 clocks before
+    const std::uint64_t clocks = [&] {
+      bench.memory = start;
+      bench.command(command.lines, command.root);
+      const std::uint64_t from = bench.clocks;
+      REQUIRE(bench.end(1000000).code == RefitCode::ok);
+      return bench.clocks - from;
+    }();
     const std::array<RefitCode, 4> read_codes = {RefitCode::ok, RefitCode::read, RefitCode::timeout, RefitCode::owed};
     const std::array<RefitCode, 4> write_codes = {RefitCode::ok, RefitCode::write, RefitCode::timeout, RefitCode::owed};
     for (std::uint32_t line = 1; line < line_count; ++line) {
@@ -488,7 +552,7 @@ TEST_CASE("cchip_refit: every fault ends the refit with its code, and the next o
       bench.how = {};
       bench.memory = start;
       bench.command(command.lines, command.root);
-      for (auto n = random() % 1200; n > 0; --n) bench.step();
+      for (auto n = random() % (clocks - 20); n > 0; --n) bench.step();
       bench.abort(true);
       bench.step();
       bench.abort(false);
@@ -504,7 +568,7 @@ TEST_CASE("cchip_refit: every fault ends the refit with its code, and the next o
       good();
       bench.memory = start;
       bench.command(command.lines, command.root);
-      for (auto n = random() % 1200; n > 0; --n) bench.step();
+      for (auto n = random() % (clocks - 20); n > 0; --n) bench.step();
       bench.reset();
       ++resets;
       good();

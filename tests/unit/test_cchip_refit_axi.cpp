@@ -163,8 +163,8 @@ TEMPLATE_LIST_TEST_CASE("cchip_refit_axi: every fault of memory has its code, an
         // An answer after the limit. Until it comes, that direction is refused: reads at the first line, writes at the
         // first node that is done.
         auto& memory = bench.memory();
-        at(reads, line, [&memory] {
-          memory.options.latency = memory.options.write_latency = 30000;
+        at(reads, line, [&memory, reads] {
+          (reads ? memory.options.latency : memory.options.write_latency) = 30000;
           return AxiFault::none;
         });
         ends(RefitCode::timeout, line);
