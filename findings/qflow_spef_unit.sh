@@ -12,7 +12,7 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-apt-get download --quiet --quiet qflow=1.3.17+dfsg.1-3+b1 qflow-tech-osu018=1.3.17+dfsg.1-3
+apt-get download --quiet --quiet -o APT::Sandbox::User=root qflow=1.3.17+dfsg.1-3+b1 qflow-tech-osu018=1.3.17+dfsg.1-3
 for package in *.deb; do dpkg-deb --extract "$package" .; done
 ls -- *.deb
 library=usr/share/qflow/tech/osu018/osu018_stdcells.lib
