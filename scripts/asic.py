@@ -652,8 +652,10 @@ def flat(row, path):
     text = (made / "design.blif").read_text()
     gates = [line for line in text.splitlines() if line.startswith(".gate")]
     head = [line for line in text.splitlines() if line.startswith((".model", ".inputs", ".outputs"))]
-    ports = [f".inputs {name}" for name in ("zero_", "one_") if any(f"={name}" in line for line in gates)]
-    return "\n".join([*head, *ports, *gates, ".end"]) + "\n", len(gates)
+    # one line of inputs: qflow loses ports that a second one names
+    ports = "".join(f" {name}" for name in ("zero_", "one_") if any(f"={name}" in line for line in gates))
+    head = [line + ports if line.startswith(".inputs") else line for line in head]
+    return "\n".join([*head, *gates, ".end"]) + "\n", len(gates)
 
 
 def lay_out(row, options):
