@@ -201,7 +201,7 @@ module cchip_refit #(
       .axes (axes)
   );
 
-  // ---- clocks 1..7: {levels, child, rise, stored, place, first, last vertex}. Bounds are stored
+  // ---- clocks 1..8: {levels, child, rise, stored, place, first, last vertex}. Bounds are stored
   // as those of a child, of the node in work or above it
   localparam integer CONTROL_W = LEVEL_W + LEVEL_W + 2 + 1 + 1 + 4 + 2;
   wire [CONTROL_W-1:0] control = {
@@ -215,7 +215,8 @@ module cchip_refit #(
     last_vertex
   };
   reg [CONTROL_W-1:0] control_q1, control_q2, control_q3, control_q4, control_q5, control_q6;
-  reg [6:1] valid_q;
+  reg [CONTROL_W-1:0] control_q7;
+  reg [7:1] valid_q;
   always @(posedge clk) begin
     control_q1 <= control;
     control_q2 <= control_q1;
@@ -223,15 +224,18 @@ module cchip_refit #(
     control_q4 <= control_q3;
     control_q5 <= control_q4;
     control_q6 <= control_q5;
-    valid_q    <= rst ? 6'd0 : {valid_q[5:1], run_q};
+    control_q7 <= control_q6;
+    valid_q    <= rst ? 7'd0 : {valid_q[6:1], run_q};
   end
   wire [LEVEL_W-2:0] even4 = control_q4[11+:LEVEL_W-1];
   wire [LEVEL_W-2:0] odd4 = control_q4[11+LEVEL_W+:LEVEL_W-1];
-  wire [LEVEL_W-1:0] above6, level6;
-  wire [1:0] child6;
-  wire rise6, stored6, first6, last6;
-  wire [3:0] place6;
-  assign {above6, level6, child6, rise6, stored6, place6, first6, last6} = control_q6;
+  wire rise6 = control_q6[7];
+  wire odd6 = control_q6[10];
+  wire [LEVEL_W-1:0] above7, level7;
+  wire [1:0] child7;
+  wire rise7, stored7, first7, last7;
+  wire [3:0] place7;
+  assign {above7, level7, child7, rise7, stored7, place7, first7, last7} = control_q7;
 
   wire [51:0] leaf_least, leaf_greatest;
   cchip_refit_leaf u_leaf (
@@ -278,28 +282,30 @@ module cchip_refit #(
       .read_data (odd)
   );
 
-  // ---- clock 7: the least and the greatest of all vertices; 8: of all children so far
-  wire [103:0] own6 = level6[0] ? odd : even;
-  wire [51:0] least6 = rise6 ? own6[51:0] : leaf_least;
-  wire [51:0] greatest6 = rise6 ? own6[103:52] : leaf_greatest;
-  reg [103:0] old_q;
+  // ---- clock 7: bounds of a vertex or of a node; 8: the least and the greatest of all vertices; 9:
+  // of all children so far
+  reg [103:0] item_q, before_q, old_q;
+  wire [51:0] least7 = item_q[51:0];
+  wire [51:0] greatest7 = item_q[103:52];
   reg whole_q;  // of a node's axis
   always @(posedge clk) begin
-    if (first6 || $signed(least6) < $signed(least_q)) least_q <= least6;
-    if (first6 || $signed(greatest6) > $signed(greatest_q)) greatest_q <= greatest6;
-    old_q         <= level6[0] != rise6 ? odd : even;
-    store_level_q <= rise6 ? above6 : level6;
-    store_child_q <= child6;
-    store_place_q <= place6;
+    item_q   <= !rise6 ? {leaf_greatest, leaf_least} : odd6 ? odd : even;
+    before_q <= odd6 != rise6 ? odd : even;
+    if (first7 || $signed(least7) < $signed(least_q)) least_q <= least7;
+    if (first7 || $signed(greatest7) > $signed(greatest_q)) greatest_q <= greatest7;
+    old_q         <= before_q;
+    store_level_q <= rise7 ? above7 : level7;
+    store_child_q <= child7;
+    store_place_q <= place7;
     all_least_q <= store_child_q != 2'd0 && $signed(old_q[51:0]) < $signed(least_q) ?
         old_q[51:0] : least_q;
     all_greatest_q <= store_child_q != 2'd0 && $signed(old_q[103:52]) > $signed(greatest_q) ?
         old_q[103:52] : greatest_q;
     all_level_q   <= store_level_q;
     all_place_q   <= store_place_q;
-    store_q       <= ~rst & valid_q[6] & last6 & stored6;
+    store_q       <= ~rst & valid_q[7] & last7 & stored7;
     store_all_q   <= ~rst & store_q;
-    whole_q       <= ~rst & valid_q[6] & rise6 && place6 < 4'd3;
+    whole_q       <= ~rst & valid_q[7] & rise7 && place7 < 4'd3;
   end
 
   // ---- nodes of which all children are done

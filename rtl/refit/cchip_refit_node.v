@@ -8,7 +8,7 @@
 //                the children are read from the block RAM until the state leaves VOLUMES
 //   write        begins when the one before it is answered, unless that was an error
 //   errors       m_fault for a clock: RANGE, ABORT of this node, or the code of a write
-//   time         from start to idle 30 clocks, step, 15 for each child and the beats
+//   time         from start to idle 31 clocks, step, 15 for each child and the beats
 //   cuts         every path: m_write_data is chosen between flip-flops
 //   reset        nothing in work, no write outstanding
 module cchip_refit_node #(

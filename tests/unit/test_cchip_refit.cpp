@@ -331,7 +331,7 @@ struct AnyTree {
     at.take = begun + 15;
     at.level = level[n];
     at.children = children;
-    at.found = begun + 16 + static_cast<std::uint64_t>(get(image[n], bvh::inner_field::step));
+    at.found = begun + 17 + static_cast<std::uint64_t>(get(image[n], bvh::inner_field::step));
     at.write_end = at.found + 15 * children + 13 + beats;
     at.finish = at.write_end + 1;
   }
