@@ -9,9 +9,9 @@ that the RAMs that hold the same bits of a line lie above each other.
     y = 82    get data: leaves   C  C  C  C  C  C  C  C  C      C cache: data, in row 46 the beats that arrive, in row
                                                                 70 tags
     y = 70    get data: nodes    C  C  C  C  C  C  C  C  C
-    y = 58    box test                 transform   slot      multipliers
+    y = 58    box test                 transform             multipliers
     y = 46    box test           traversal   cache
-    y = 34    box test                 transform             multipliers
+    y = 34    box test                 slot                  multipliers
     y = 22    box test                 operands, queues
     y = 10    box test                 slot                  multipliers
 
@@ -53,8 +53,9 @@ PLAN = (
     (r"u_traversal", RAM, natural, [(46, range(6, 8))]),
     (r"", RAM, natural, [(22, range(8, 11))]),
     (r"u_bv_unit", MULTIPLIER, natural, [(58, range(0, 7)), (34, range(0, 6)), (10, range(0, 7))]),
-    (r"u_transform", MULTIPLIER, natural, [(58, range(7, 13)), (34, range(10, 13))]),
-    (r"", MULTIPLIER, natural, [(10, range(7, 13)), (34, (7, 8, 9, 6))]),
+    (r"u_transform", MULTIPLIER, natural, [(58, range(7, 13)), (34, (12, 11)), (10, (12,))]),
+    # a test in two rows, for in one its logic lies too close
+    (r"", MULTIPLIER, natural, [(10, range(8, 12)), (34, range(8, 13)), (10, (7, 12)), (34, (7, 6)), (58, (12,))]),
 )
 
 
@@ -76,7 +77,8 @@ def anchors(kinds):
     left = {cell: kind for cell, kind in kinds.items() if kind in rows}
     for pattern, kind, order, where in PLAN:
         cells = sorted((cell for cell, of in left.items() if of == kind and re.search(pattern, cell)), key=order)
-        places = [bel for y, groups in where for group in groups for bel, _ in sites(kind, y, group)]
+        taken = set(found.values())
+        places = [bel for y, groups in where for group in groups for bel, _ in sites(kind, y, group) if bel not in taken]
         found.update(zip(cells, places))
         over += [(cell, kind, places[-1]) for cell in cells[len(places):]]
         for cell in cells:

@@ -235,7 +235,7 @@ class Floorplan(unittest.TestCase):
         top = json.loads(fpga.floorplan.anchored(text, {"router2/bbMargin/x": "14"}))["modules"]["top"]
         cells = top["cells"]
         self.assertEqual(top["settings"], {"router2/bbMargin/x": "14"})
-        self.assertEqual(cells["u_slots.a"]["attributes"], {"src": "x", "BEL": "X69/Y10/MULT18_0"})
+        self.assertEqual(cells["u_slots.a"]["attributes"], {"src": "x", "BEL": "X78/Y10/MULT18_0"})
         self.assertEqual(cells["b"], {"type": "LUT4"})
 
     def test_the_picture_has_each_block_in_its_colour(self):
