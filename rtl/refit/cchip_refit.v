@@ -156,7 +156,6 @@ module cchip_refit #(
   wire [6:0] level_above = depth_q - 7'd2;
   wire last_child = index_q == others_q;
   wire push = state_q == LINE && kind_q == 2'd0;
-  wire pop = state_q == RISE && state_d == NEXT;
   always @(posedge clk) begin
     if (push)
       stack[level[LEVEL_W-1:0]] <= {node_q, first_q, kinds_q, others_q, cut_exponent_q, index_q};
@@ -178,6 +177,7 @@ module cchip_refit #(
   wire last_vertex = vertex_q == last_vertex_q;
   wire last_place = place_q == 4'd15;
   wire last_issue = run_q && last_vertex && last_place;
+  wire pop = state_q == RISE && last_issue && depth_q != 7'd1;
   always @(posedge clk) begin
     // bounds of the node that is finished are needed yet; those of a child are read faster than a
     // leaf stores its own
@@ -452,7 +452,7 @@ module cchip_refit #(
       default: ;
     endcase
     code_q <= rests && !accept ? (state_q == IDLE ? `CCHIP_REFIT_OK : code_q) : code_d;
-    if (state_d == DONE && !rests)
+    if (!rests && (expired || (state_q == ENDED && quiet)))
       if (fault_q) begin
         code_q <= fault_code_q;
         line_q <= fault_line_q;
