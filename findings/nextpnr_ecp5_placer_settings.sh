@@ -44,7 +44,7 @@ END
     test "$(wc -l < "$1.$2")" -gt 100
 }
 for setting in "beta 0.3" "beta 0.9" "alpha 0.05" "alpha 0.5"; do
-    places ${setting% *} ${setting#* }
+    places "${setting% *}" "${setting#* }"
 done
 compare() {  # NAME A B
     if cmp -s "$1.$2" "$1.$3"; then echo "$1: the same places"; else echo "$1: other places"; fi

@@ -78,9 +78,10 @@ def anchors(kinds):
     for pattern, kind, order, where in PLAN:
         cells = sorted((cell for cell, of in left.items() if of == kind and re.search(pattern, cell)), key=order)
         taken = set(found.values())
-        places = [bel for y, groups in where for group in groups for bel, _ in sites(kind, y, group) if bel not in taken]
+        near = [bel for y, groups in where for group in groups for bel, _ in sites(kind, y, group)]
+        places = [bel for bel in near if bel not in taken]
         found.update(zip(cells, places))
-        over += [(cell, kind, places[-1]) for cell in cells[len(places):]]
+        over += [(cell, kind, near[-1]) for cell in cells[len(places):]]
         for cell in cells:
             del left[cell]
     at = {kind: dict(places) for kind, places in free.items()}

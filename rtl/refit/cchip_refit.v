@@ -282,8 +282,8 @@ module cchip_refit #(
       .read_data (odd)
   );
 
-  // ---- clock 7: bounds of a vertex or of a node; 8: the least and the greatest of all vertices; 9:
-  // of all children so far
+  // ---- clock 7: bounds of a vertex or of a node; 8: the least and the greatest of all vertices;
+  // 9: of all children so far
   reg [103:0] item_q, before_q, old_q;
   wire [51:0] least7 = item_q[51:0];
   wire [51:0] greatest7 = item_q[103:52];
