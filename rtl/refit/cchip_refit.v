@@ -452,12 +452,13 @@ module cchip_refit #(
       default: ;
     endcase
     code_q <= rests && !accept ? (state_q == IDLE ? `CCHIP_REFIT_OK : code_q) : code_d;
-    if (!rests && (expired || (state_q == ENDED && quiet)))
+    if (!rests && (expired || (state_q == ENDED && quiet))) begin
       if (fault_q) begin
         code_q <= fault_code_q;
         line_q <= fault_line_q;
         if (!fault_write_q) visited_q <= node_visited_q;
       end else if (expired && writing && code_q == `CCHIP_REFIT_OK) line_q <= written;
+    end
     if (rst) begin
       state_q <= IDLE;
       ready_q <= 1'b0;

@@ -60,6 +60,7 @@ module cchip_refit_node #(
     input  wire [`CCHIP_WRITE_CODE_W-1:0] s_write_code    // its code, of cchip_axi_write
 );
 
+  localparam [31:0] WIDTH = DATA_W;
   localparam [31:0] LAST_BEAT = 512 / DATA_W - 1;
 
   localparam [2:0] IDLE = 3'd0;
@@ -220,7 +221,7 @@ module cchip_refit_node #(
   assign m_write_last  = last_beat;
   assign m_write_line  = address_q;
   assign m_write_beat  = beat_q;
-  assign m_write_data  = node[DATA_W*{29'd0, beat_q}+:DATA_W];
+  assign m_write_data  = node[WIDTH*{29'd0, beat_q}+:DATA_W];
 
   always @(posedge clk)
     if (!rst) begin
