@@ -145,8 +145,10 @@ class SimulatedRefit {
 };
 
 /// A refit engine on the bus of a chip, and the memory behind it: what a ChipMachine has as its bus. The chip's clock
-/// is that of the engine, whose model is evaluated only while it has something to do. \tparam Chip, Engine  Verilated
-/// classes; \tparam DATA_W width of their data buses, bit
+/// is that of the engine, whose model is evaluated only while it has something to do.
+///
+/// \tparam Chip, Engine  Verilated classes
+/// \tparam DATA_W        width of their data buses, bit
 template <class Chip, class Engine, int DATA_W>
 class BusWithRefit : public Agent {
  public:
