@@ -19,7 +19,8 @@ usage: floorplan.py heat FILE.svg TITLE=TABLE...     TABLE: congestion_by_coordi
                                                      --heat), side by side
 
 Memory and bus come to the cache at the upper edge; lines go left to get data and down to the box test, vertices to the
-right."""
+right. Where registers, bus and cache meet, more wires are needed than there are: every fourth row of tiles there is
+kept empty, by cells that are fixed and connected to nothing."""
 import csv
 import json
 import re
@@ -28,6 +29,13 @@ import sys
 RAM, MULTIPLIER = "DP16KD", "MULT18X18D"
 GROUPS = 13
 WIDTH, HEIGHT = 126, 95  # tiles
+EMPTY = (  # columns and rows of tiles
+    (range(66, 105), range(71, 94, 4)),  # registers, bus, cache
+    (range(64, 104), range(3, 22, 4)),  # the test at its lower row of multipliers
+    (range(24, 44), range(71, 94, 4)),  # get data
+    (range(8, 45), range(39, 64, 4)),  # box test
+)
+EMPTY_NAME = "floorplan_empty_"
 
 
 def natural(name):
@@ -97,15 +105,28 @@ def anchors(kinds):
     return found
 
 
+def empty_tiles():
+    """Cells connected to nothing that fill the tiles of EMPTY: {name: cell of Yosys' JSON}. Eight look-up tables and
+    eight flip-flops in each tile."""
+    kinds = {f"K{half}": ("LUT4", {"INIT": "0" * 16}) for half in "01"} | {
+        f"FF{half}": ("TRELLIS_FF", {"GSR": "DISABLED"}) for half in "01"}
+    tiles = [(x, y) for columns, rows in EMPTY for x in columns for y in rows]
+    return {f"{EMPTY_NAME}{x}_{y}_{part}_{name}": {
+        "hide_name": 0, "type": kind, "parameters": parameters, "port_directions": {}, "connections": {},
+        "attributes": {"BEL": f"X{x}/Y{y}/SLICE{part}.{name}", "keep": "1"}}
+        for x, y in tiles for part in "ABCD" for name, (kind, parameters) in kinds.items()}
+
+
 def anchored(netlist, settings):
-    """The text of Yosys' JSON with a place at every block RAM and multiplier, and with settings of nextpnr that have no
-    option."""
+    """The text of Yosys' JSON with a place at every block RAM and multiplier, tiles that stay empty, and settings of
+    nextpnr that have no option."""
     design = json.loads(netlist)
-    for module in design["modules"].values():
-        module["settings"] = settings
-        cells = module["cells"]
-        for cell, bel in anchors({name: cell["type"] for name, cell in cells.items()}).items():
-            cells[cell].setdefault("attributes", {})["BEL"] = bel
+    top = max(design["modules"].values(), key=lambda module: len(module["cells"]))  # the others are primitives
+    top["settings"] = settings
+    cells = top["cells"]
+    for cell, bel in anchors({name: cell["type"] for name, cell in cells.items()}).items():
+        cells[cell].setdefault("attributes", {})["BEL"] = bel
+    cells.update(empty_tiles())
     return json.dumps(design)
 
 

@@ -606,10 +606,11 @@ def figures(row, synthesis, reports, beats):
     used = {name: n["used"] for name, n in reports[seed]["utilization"].items() if n["used"]}
     fmax_median = round(statistics.median(clocks.values()), 2)
     rate = lambda mean: round(row.lanes * fmax_median * 1e6 / mean)
+    empty = len(floorplan.empty_tiles()) // 2 if row.floorplan else 0  # look-up tables that keep tiles empty
     return {
         "top": row.top, "parameters": dict(row.parameters), "files": f"rtl/{row.files}", "coord_w": row.coord_w,
         "substages": row.substages, "lanes": row.lanes, "shape": row.shape, "label": row.label or row.name,
-        "lut4": module["LUT4"], "comb": used["TRELLIS_COMB"] - harness.get("LUT4", 0), "carry": module["CCU2C"],
+        "lut4": module["LUT4"], "comb": used["TRELLIS_COMB"] - harness.get("LUT4", 0) - empty, "carry": module["CCU2C"],
         "ff": module["TRELLIS_FF"], "dsp": module["MULT18X18D"], "bram": module["DP16KD"],
         "dram": module["TRELLIS_DPR16X4"], "seeds_tried": tried, "fmax_mhz": clocks, "fmax_min": min(clocks.values()),
         "fmax_median": fmax_median, "fmax_max": max(clocks.values()),

@@ -31,7 +31,7 @@ module cchip_descriptor_queues #(
 ) (
     input  wire                                  clk,                 // clock, rising edge
     input  wire                                  rst,  // synchronous reset, active high
-    input  wire                                  s_valid,             // a descriptor is offered
+    input  wire                                  s_valid,  // a descriptor comes; only while s_ready
     // the queue of s_kind has room; follows s_kind
     output wire                                  s_ready,
     input  wire [              `CCHIP_KIND_W-1:0] s_kind,  // kind of the descriptor, at most KINDS
@@ -67,7 +67,6 @@ module cchip_descriptor_queues #(
                 cchip_error_QUEUE_DEPTH_must_be_a_power_of_two_16_to_1024)
 
   // ---- pointers and counts
-  wire push = s_valid & s_ready;
   wire [PTR_W*QUEUES-1:0] write, read;
   wire [QUEUES-1:0] kind_of_push;  // one-hot
   genvar k;
@@ -76,7 +75,7 @@ module cchip_descriptor_queues #(
       localparam [31:0] KIND = k;
       reg [PTR_W-1:0] write_q, read_q;
       assign kind_of_push[k] = s_kind == KIND[KIND_W-1:0] || (k == 0 && s_kind > LAST[KIND_W-1:0]);
-      wire push_here = push & kind_of_push[k];
+      wire push_here = s_valid & kind_of_push[k];
       wire pop_here = pop & kind[k];
       always @(posedge clk)
         if (rst) begin
@@ -142,7 +141,7 @@ module cchip_descriptor_queues #(
       .ADDR_W(PLACE_W)
   ) u_memory (
       .clk       (clk),
-      .write     (push),
+      .write     (s_valid),
       .write_addr(s_place),
       .write_data(s_data),
       .read_addr (place_q),
@@ -151,6 +150,7 @@ module cchip_descriptor_queues #(
 
   always @(posedge clk)
     if (!rst) begin
+      `CCHIP_ASSERT(a_room, !s_valid || s_ready)
       `CCHIP_ASSERT(a_kind, !(look || pop)
           || (kind & (kind - {{KINDS{1'b0}}, 1'b1})) == {QUEUES{1'b0}})
       `CCHIP_ASSERT(a_pop, !pop || |(kind & some))

@@ -85,19 +85,27 @@ module cchip_sat_compare #(
     end
   endfunction
 
-  // ---- clocks 1 and 2 beside the values
-  wire [1:0] own;
-  wire allow_above, allow_below;
-  cchip_delay #(.WIDTH(4), .DEPTH(2)) u_flags (
-      .clk(clk),
-      .rst(1'b0),
-      .d  ({s_own, s_allow_above, s_allow_below}),
-      .q  ({own, allow_above, allow_below})
-  );
-
   // ---- values: the projections, their differences to the own points in slots 0 and 1
   localparam integer VALUES = 3 * POINTS;
-  wire [VALUES-1:0] negative, zero, near;
+  // those that are no difference between the two sets, or of a slot that is not there
+  function [VALUES-1:0] ignored(input [1:0] in);
+    ignored = {OWN == 2 ? {{POINTS - 2{1'b0}}, in} | {POINTS{~in[1]}} : {POINTS{1'b1}},
+               {{POINTS - 2{1'b0}}, in} | {POINTS{~in[0]}}, {{POINTS - 2{1'b0}}, in}};
+  endfunction
+
+  // ---- clocks 1 and 2 beside the values
+  reg [VALUES-1:0] used_q1;
+  reg [1:0] own_q1, own_q2, allow_q1, allow_q2;  // allow: above, below
+  always @(posedge clk) begin
+    used_q1  <= ~ignored(s_own);
+    own_q1   <= s_own;
+    own_q2   <= own_q1;
+    allow_q1 <= {s_allow_above, s_allow_below};
+    allow_q2 <= allow_q1;
+  end
+
+  wire [VALUES-1:0] sign;  // clock 1: the value is negative
+  wire [VALUES-1:0] zero, near;
   reg uncertain_q3;
 
   genvar i, g;
@@ -106,7 +114,7 @@ module cchip_sat_compare #(
       localparam integer SLOT = i % POINTS;
       localparam integer FROM = i / POINTS;  // 0: the reference, 1 and 2: slots 0 and 1
       if (FROM > OWN || SLOT < FROM) begin : gen_none
-        assign negative[i] = 1'b0;
+        assign sign[i] = 1'b0;
         assign zero[i] = 1'b0;
         assign near[i] = 1'b0;
       end else begin : gen_used
@@ -118,6 +126,7 @@ module cchip_sat_compare #(
           always @(posedge clk)
             v_q <= s_projection[PROJ_W*SLOT+:PROJ_W] - s_projection[PROJ_W*(FROM-1)+:PROJ_W];
         end
+        assign sign[i] = v_q[PROJ_W-1];
         // clock 2
         reg negative_q2;
         reg [LOW_W:0] size_q2;
@@ -140,33 +149,36 @@ module cchip_sat_compare #(
         if (i == OWN) begin : gen_sign
           always @(posedge clk) uncertain_q3 <= no_more(negative_q2, size_q2, s_sign_bound);
         end
-        assign negative[i] = negative_q2;
         assign zero[i] = zero_q3;
         assign near[i] = near_q3;
       end
     end
   endgenerate
 
+  // ---- clock 2: differences that are not negative, negative, and on another side of the own point
+  // than of the reference
+  reg [POINTS-1:0] signs_q2;
+  reg [VALUES-1:0] up_q2, down_q2, across_q2;
+  always @(posedge clk) begin
+    signs_q2  <= sign[POINTS-1:0];
+    up_q2     <= used_q1 & ~sign;
+    down_q2   <= used_q1 & sign;
+    across_q2 <= used_q1 & (sign ^ {3{sign[POINTS-1:0]}});
+  end
+
   // ---- clock 3: combines the signs of all differences between the sets
-  function [VALUES-1:0] ignored(input [1:0] in);
-    ignored = {OWN == 2 ? {{POINTS - 2{1'b0}}, in} | {POINTS{~in[1]}} : {POINTS{1'b1}},
-               {{POINTS - 2{1'b0}}, in} | {POINTS{~in[0]}}, {{POINTS - 2{1'b0}}, in}};
-  endfunction
-  wire [VALUES-1:0] ignore = ignored(own);
-  // the point is on the same side of the own points in slots 0 and 1 as of the reference
-  wire [VALUES-1:0] same = negative ~^ {3{negative[POINTS-1:0]}};
   reg [1:0] own_q3;
   reg above_q3, below_q3, same_q3;
   reg [POINTS-1:0] negative_q3;
-  reg [VALUES-1:0] up_q3, down_q3;  // differences that are compared: not negative, negative
+  reg [VALUES-1:0] up_q3, down_q3;
   always @(posedge clk) begin
-    own_q3      <= own;
-    above_q3    <= allow_above & (&(ignore | ~negative));
-    below_q3    <= allow_below & (&(ignore | negative));
-    same_q3     <= &(ignore | same);
-    negative_q3 <= negative[POINTS-1:0];
-    up_q3       <= ~ignore & ~negative;
-    down_q3     <= ~ignore & negative;
+    own_q3      <= own_q2;
+    above_q3    <= allow_q2[1] & ~|down_q2;
+    below_q3    <= allow_q2[0] & ~|up_q2;
+    same_q3     <= ~|across_q2;
+    negative_q3 <= signs_q2;
+    up_q3       <= up_q2;
+    down_q3     <= down_q2;
   end
 
   // ---- clock 4: combines zero and near, which take one clock longer than the signs

@@ -7,14 +7,14 @@
 //   order     one descriptor, any, is followed: when all that came before it in its kind have left, a look finds its place a clock
 //             later and its data two clocks later, until two clocks after its pop
 //   place     while it waits no push gets its place
-// Assumed: a look is at one kind that is not empty; a pop is of the kind looked at last, once, a clock later at the earliest.
+// Assumed: a descriptor comes only while there is room for its kind; a look is at one kind that is not empty; a pop is of the kind looked at last, once, a clock later at the earliest.
 module cchip_descriptor_queues_properties #(
     parameter integer KINDS = 1,
     parameter integer DEPTH = 16
 ) (
     input wire                     clk,
     input wire                     rst,
-    input wire                     s_valid,
+    input wire                     offered,
     input wire [`CCHIP_KIND_W-1:0] s_kind,
     input wire                     s_data,
     input wire                     follow,
@@ -25,6 +25,7 @@ module cchip_descriptor_queues_properties #(
   localparam integer PLACE_W = `CCHIP_KIND_BITS(KINDS) + $clog2(DEPTH);
   localparam integer COUNT_W = $clog2(DEPTH + 1);
   wire s_ready, m_data;
+  wire s_valid = offered & s_ready;
   wire [PLACE_W-1:0] s_place, m_place;
   wire [KINDS:0] some, room;
   wire [(KINDS+1)*COUNT_W-1:0] waiting;
@@ -73,7 +74,7 @@ module cchip_descriptor_queues_properties #(
   reg data_q;
   reg [PLACE_W-1:0] place_q;
   wire [`CCHIP_KIND_W-1:0] queue = s_kind > KINDS ? 0 : s_kind;
-  wire push_here = s_valid & s_ready & (queue == mine);
+  wire push_here = s_valid & (queue == mine);
   wire pop_here = pop & (kind_q == mine);
   wire mark = push_here & follow & ~waits_q & ~done_q;
   reg found_q;  // the last look was at it

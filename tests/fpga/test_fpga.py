@@ -238,6 +238,19 @@ class Floorplan(unittest.TestCase):
         self.assertEqual(cells["u_slots.a"]["attributes"], {"src": "x", "BEL": "X78/Y10/MULT18_0"})
         self.assertEqual(cells["b"], {"type": "LUT4"})
 
+    def test_tiles_that_stay_empty_are_full_of_cells_without_nets(self):
+        empty = fpga.floorplan.empty_tiles()
+        places = {cell["attributes"]["BEL"] for cell in empty.values()}
+        tiles = sum(len(columns) * len(rows) for columns, rows in fpga.floorplan.EMPTY)
+        self.assertEqual((len(empty), len(places)), (16 * tiles,) * 2)  # zones do not overlap
+        self.assertTrue(all(cell["connections"] == {} for cell in empty.values()))
+        self.assertEqual({cell["type"] for cell in empty.values()}, {"LUT4", "TRELLIS_FF"})
+        # of a tile: all there is
+        self.assertEqual({place.split("/")[2] for place in places if place.startswith("X66/Y71/")},
+                         {f"SLICE{part}.{kind}{half}" for part in "ABCD" for kind in ("K", "FF") for half in "01"})
+        # none where a block RAM or a multiplier may be
+        self.assertFalse({int(place.split("/Y")[1].split("/")[0]) for place in places} & {10, 22, 34, 46, 58, 70, 82})
+
     def test_the_picture_has_each_block_in_its_colour(self):
         svg = fpga.floorplan.picture({"a": (1, 2), "b": (1, 2), "c": (9, 9)},
                                      {"a": "TRELLIS_FF", "b": "TRELLIS_FF", "c": "DP16KD"},

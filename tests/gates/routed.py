@@ -65,6 +65,8 @@ class Netlist:
                 continue
             if not hasattr(self, kind.lower()) and kind not in self.models:
                 raise Failure(f"no model of the cell {kind}, {name}")
+            if not pins:  # it keeps a place empty
+                continue
             if any(pins.get(pin, clock) != clock for pin in ("CLK", "WCK", "CLKA", "CLKB", "CLK0")):
                 raise Failure(f"{name} has another clock")
             yield from getattr(self, kind.lower())(pins, parameters) if kind not in self.models else [

@@ -95,6 +95,11 @@ class Cells(unittest.TestCase):
                            {"DI": 2, "CLK": 9, "Q": 5})).lines("n9")
         self.assertEqual(line, "reg n5 = 1'b0; always @(posedge clk) n5 <= n2;")
 
+    def test_what_is_connected_to_nothing_is_left_out(self):
+        cells = netlist(lut=("TRELLIS_COMB", {"INITVAL": "0" * 16, "MODE": "LOGIC"}, {}),
+                        ff=("TRELLIS_FF", {"CEMUX": "1"}, {}))
+        self.assertEqual(list(cells.lines("n1")), [])
+
     def test_what_no_model_has_is_refused(self):
         for cell, message in ((("EHXPLLL", {}, {}), "no model of the cell EHXPLLL"),
                               (("TRELLIS_COMB", {"MODE": "LOGIC", "INITVAL": "0" * 16}, {"F": 1, "OFX": 2}),

@@ -29,7 +29,9 @@ TEMPLATE_LIST_TEST_CASE(
     int full = 0, popped = 0;
     const auto put = [&](int kind, bool valid) {
       top.s_kind = static_cast<CData>(kind);
-      top.s_valid = valid ? 1 : 0;
+      top.s_valid = 0;
+      simulation.settle();
+      top.s_valid = valid && top.s_ready != 0 ? 1 : 0;
       sim::set_random(top.s_data, TestType::WIDTH, random);
     };
     top.kind = top.look = top.pop = 0;
@@ -48,7 +50,7 @@ TEMPLATE_LIST_TEST_CASE(
       }
       const int kind = top.s_kind < queues ? top.s_kind : 0;  // no such kind: as the illegal one
       REQUIRE((top.s_ready != 0) == (waiting[static_cast<std::size_t>(kind)].size() < TestType::DEPTH));
-      if (top.s_valid != 0 && top.s_ready != 0) {
+      if (top.s_valid != 0) {
         const int place = static_cast<int>(top.s_place);
         REQUIRE(place / TestType::DEPTH == kind);
         REQUIRE(used.insert(place).second);
