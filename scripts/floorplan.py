@@ -32,8 +32,6 @@ WIDTH, HEIGHT = 126, 95  # tiles
 EMPTY = (  # columns and rows of tiles
     (range(66, 105), range(71, 94, 4)),  # registers, bus, cache
     (range(64, 104), range(3, 22, 4)),  # the test at its lower row of multipliers
-    (range(24, 44), range(71, 94, 4)),  # get data
-    (range(8, 45), range(39, 64, 4)),  # box test
 )
 EMPTY_NAME = "floorplan_empty_"
 
