@@ -32,6 +32,9 @@ usage: fpga.py [ROW[:SEEDS]...] [options]     without ROW all rows; `fpga.py --l
   --no-floorplan    place the chip's rows without scripts/floorplan.py, which gives block RAMs and multipliers their
                     places
   --goal MHZ        clock that --estimate counts ends behind (default 100)
+  --bitstreams FOLDER
+                    nothing but this: of the chip's rows that were placed and routed here from today's RTL, copy the
+                    bitstream of the fastest seed, as collisionchip-ROW-lfe5u85f.bit
   --check           nothing but this: exit 1 if a short table of its pages is not made of the lines of its
                     CSV file in docs/figures
   --list            print the rows
@@ -333,8 +336,17 @@ def synthesise(row, options):
         "setattr -unset src *\nsetattr -mod -unset src *\n"
         "write_json {}/netlist.json\n")
     # a new comment does not mean a new synthesis, nor, without the places in the sources, a new place and route
-    bare = {name: re.sub(r"\s*//.*", "", lines) for name, lines in text.items()}
-    return yosys(f"{row.name}.synth", script, [bare, made], "netlist.json", made)
+    return yosys(f"{row.name}.synth", script, [bare(text), made], "netlist.json", made)
+
+
+def bare(text):
+    """Texts by name of their file, without comments."""
+    return {name: re.sub(r"\s*//.*", "", lines) for name, lines in text.items()}
+
+
+def rtl_of(row):
+    """A number for the RTL that a row is made of, comments aside."""
+    return hashlib.sha256(json.dumps(bare(sources(row))).encode()).hexdigest()[:12]
 
 
 # command of Yosys, the cells that each column counts, and macros
@@ -425,18 +437,35 @@ def place(row, synthesis, seed, options):
     report = json.loads((folder / "report.json").read_text())
     say(f"{row.name} seed {seed}: {fmax(report):.1f} MHz")
     if row.owners:
-        bitstream(row, folder / "design.config", seed, options)
+        report["bitstream"] = bitstream(row, folder / "design.config", seed, options)
     return report
 
 
 def bitstream(row, config, seed, options):
-    """What would be loaded into the device: one for the whole chip."""
+    """What would be loaded into the device, one for the whole chip: its file."""
     packer = pathlib.Path(options.nextpnr).with_name("yowasp-ecppack")
     command = [str(packer), "--compress", str(config.relative_to(ROOT)), "{}/chip.bit"]
     folder = step(f"{row.name}.bit{seed}", command, {}, [hashlib.sha256(config.read_bytes()).hexdigest()], "chip.bit")
     data = (folder / "chip.bit").read_bytes()
     say(f"{row.name} seed {seed}: bitstream bytes={len(data)} crc32={zlib.crc32(data):08x} "
         f"file={(folder / 'chip.bit').relative_to(ROOT)}")
+    return str((folder / "chip.bit").relative_to(ROOT))
+
+
+def copy_bitstreams(into):
+    """--bitstreams: a line for each that is copied. Returns the exit code."""
+    path = BUILD / "fpga.json"
+    kept = json.loads(path.read_text()) if path.exists() else {}
+    into.mkdir(parents=True, exist_ok=True)
+    for name, row in rows().items():
+        made = kept.get(name, {}).get("bitstream", {})
+        if made and made["rtl"] == rtl_of(row) and (ROOT / made["file"]).exists():
+            to = into / f"collisionchip-{name}-lfe5u85f.bit"
+            shutil.copyfile(ROOT / made["file"], to)
+            print(f"{name} seed={made['seed']} fmax_mhz={made['fmax_mhz']} {to}")
+        elif made:
+            say(f"fpga.py: the bitstream of {name} is of other RTL, or gone; run: scripts/fpga.py {name}")
+    return 0
 
 
 def estimate(row, synthesis, seed, options):
@@ -605,6 +634,7 @@ def figures(row, synthesis, reports, beats):
     seed = next(seed for seed, clock in clocks.items() if clock == median)
     used = {name: n["used"] for name, n in reports[seed]["utilization"].items() if n["used"]}
     fmax_median = round(statistics.median(clocks.values()), 2)
+    best = max(clocks, key=clocks.get)
     rate = lambda mean: round(row.lanes * fmax_median * 1e6 / mean)
     empty = len(floorplan.empty_tiles()) // 2 if row.floorplan else 0  # look-up tables that keep tiles empty
     return {
@@ -616,6 +646,8 @@ def figures(row, synthesis, reports, beats):
         "fmax_median": fmax_median, "fmax_max": max(clocks.values()),
         "critical_path": in_words(critical_path(reports[seed])), "synthesis": synthesis.name,
         "block": row.block,
+        "bitstream": {"file": reports[best]["bitstream"], "seed": best, "fmax_mhz": clocks[best],
+                      "rtl": rtl_of(row)} if "bitstream" in reports[best] else {},
         "bill": bill(row, synthesis) if row.owners else {},
         "static": {name: static[cell] for name, cell in COLUMNS.items()} if regions and not row.block else {},
         "endpoints": endpoints(reports[seed], 5),
@@ -922,6 +954,7 @@ def arguments(words=None):
     parser.add_argument("--goal", type=float, default=100)
     parser.add_argument("--picture", type=pathlib.Path)
     parser.add_argument("--heat", type=os.path.abspath)
+    parser.add_argument("--bitstreams", type=pathlib.Path)
     parser.add_argument("--family", action="append", choices=FAMILIES)
     parser.add_argument("--limit", type=float)
     for flag in ("--families", "--write", "--bill", "--estimate", "--check", "--list", "--no-floorplan"):
@@ -1037,6 +1070,8 @@ def main():
         return 0
     if options.check:
         return 1 if check() else 0
+    if options.bitstreams:
+        return copy_bitstreams(options.bitstreams)
     chosen = [dataclasses.replace(row, seeds=min(row.seeds, options.rows.get(name, options.seeds)))
               for name, row in rows().items() if not options.rows or name in options.rows]
     if options.limit:  # children have it, too

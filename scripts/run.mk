@@ -338,13 +338,14 @@ sdist: $(PYTHON_TOOLS)/requirements.txt ## pack the sources of the Python packag
 
 VERSION := $(word 3,$(shell grep -m 1 '^project.collisionchip VERSION' CMakeLists.txt))
 # the prerequisites one after the other: each clears its own files in dist
-release: ## source, Python packages and exported Verilog of this version in dist, with their SHA-256; only what is committed
+release: ## source, Python packages, exported Verilog of this version, and bitstreams of the chip that were made here, in dist, with their SHA-256; only what is committed
 	@test -z "$$(git status --porcelain)" || { echo "release: not all is committed: git status" >&2; exit 1; }
 	$(MAKE) --no-print-directory -f scripts/run.mk sdist
 	$(MAKE) --no-print-directory -f scripts/run.mk wheel
 	$(MAKE) --no-print-directory -f scripts/run.mk export
 	git archive --format=tar.gz --prefix=collisionchip-$(VERSION)/ --output=dist/collisionchip-$(VERSION)-source.tar.gz HEAD
 	tar -C build -czf dist/collisionchip-$(VERSION)-verilog.tar.gz export
+	scripts/fpga.py --bitstreams dist
 	cd dist && sha256sum collisionchip-* > SHA256SUMS && cat SHA256SUMS
 	@echo "tag: v$(VERSION)"
 

@@ -5,7 +5,9 @@
 report.json and stat.json are recorded: one run of nextpnr-ecp5 0.11.1 without the unused kinds of block, and the
 statistics of Yosys 0.23 of a design in the harness. Environment: VERILATOR, IVERILOG, YOSYS, CAMPAIGN
 (cchip_campaign)."""
+import contextlib
 import copy
+import io
 import json
 import os
 import pathlib
@@ -367,6 +369,29 @@ class Steps(OwnFolder):
         failures = []
         self.assertIsNone(fpga.attempt(failures, self.run_step, [1], "exit 1"))
         self.assertEqual(len(failures), 1)
+
+
+class Bitstreams(OwnFolder):
+    def test_only_those_of_todays_rtl_are_copied(self):
+        of_today, rtl_of = "0123456789ab", fpga.rtl_of
+        fpga.rtl_of = lambda row: of_today
+        self.addCleanup(setattr, fpga, "rtl_of", rtl_of)
+        fpga.BUILD.mkdir()
+        (fpga.BUILD / "chip.bit").write_bytes(b"bits")
+        made = {"file": "build/chip.bit", "seed": 2, "fmax_mhz": 71.5, "rtl": of_today}
+        fpga.save({"chip": {"bitstream": made}, "chip_tri": {"bitstream": {**made, "rtl": "of before"}},
+                   "chip_small": {"bitstream": {**made, "file": "build/gone.bit"}}, "tri_tri": {"bitstream": {}}})
+        into = fpga.ROOT / "dist"
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said):
+            self.assertEqual(fpga.copy_bitstreams(into), 0)
+        self.assertEqual([path.name for path in into.iterdir()], ["collisionchip-chip-lfe5u85f.bit"])
+        self.assertEqual((into / "collisionchip-chip-lfe5u85f.bit").read_bytes(), b"bits")
+        self.assertEqual(said.getvalue(), f"chip seed=2 fmax_mhz=71.5 {into}/collisionchip-chip-lfe5u85f.bit\n")
+
+    def test_without_any_nothing_is_copied(self):
+        self.assertEqual(fpga.copy_bitstreams(fpga.ROOT / "dist"), 0)
+        self.assertEqual(list((fpga.ROOT / "dist").iterdir()), [])
 
 
 class Beats(OwnFolder):
