@@ -19,8 +19,9 @@ usage: floorplan.py heat FILE.svg TITLE=TABLE...     TABLE: congestion_by_coordi
                                                      --heat), side by side
 
 Memory and bus come to the cache at the upper edge; lines go left to get data and down to the box test, vertices to the
-right. Where registers, bus and cache meet, more wires are needed than there are: every fourth row of tiles there is
-kept empty, by cells that are fixed and connected to nothing."""
+right. Where registers, bus and cache meet, and where the test lies at its lower row of multipliers, more wires are
+needed than there are: every fourth row of tiles there is kept empty, by cells that are fixed and connected to
+nothing."""
 import csv
 import json
 import re
@@ -33,7 +34,6 @@ EMPTY = (  # columns and rows of tiles
     (range(66, 105), range(71, 94, 4)),  # registers, bus, cache
     (range(64, 104), range(3, 22, 4)),  # the test at its lower row of multipliers
 )
-EMPTY_NAME = "floorplan_empty_"
 
 
 def natural(name):
@@ -109,7 +109,7 @@ def empty_tiles():
     kinds = {f"K{half}": ("LUT4", {"INIT": "0" * 16}) for half in "01"} | {
         f"FF{half}": ("TRELLIS_FF", {"GSR": "DISABLED"}) for half in "01"}
     tiles = [(x, y) for columns, rows in EMPTY for x in columns for y in rows]
-    return {f"{EMPTY_NAME}{x}_{y}_{part}_{name}": {
+    return {f"floorplan_empty_{x}_{y}_{part}_{name}": {
         "hide_name": 0, "type": kind, "parameters": parameters, "port_directions": {}, "connections": {},
         "attributes": {"BEL": f"X{x}/Y{y}/SLICE{part}.{name}", "keep": "1"}}
         for x, y in tiles for part in "ABCD" for name, (kind, parameters) in kinds.items()}

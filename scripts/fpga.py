@@ -453,14 +453,16 @@ def bitstream(row, config, seed, options):
 
 
 def copy_bitstreams(into):
-    """--bitstreams: a line for each that is copied. Returns the exit code."""
+    """--bitstreams: a line for each that is copied; one of an earlier call that is not copied again is removed. Returns
+    the exit code."""
     path = BUILD / "fpga.json"
     kept = json.loads(path.read_text()) if path.exists() else {}
     into.mkdir(parents=True, exist_ok=True)
     for name, row in rows().items():
         made = kept.get(name, {}).get("bitstream", {})
+        to = into / f"collisionchip-{name}-lfe5u85f.bit"
+        to.unlink(missing_ok=True)
         if made and made["rtl"] == rtl_of(row) and (ROOT / made["file"]).exists():
-            to = into / f"collisionchip-{name}-lfe5u85f.bit"
             shutil.copyfile(ROOT / made["file"], to)
             print(f"{name} seed={made['seed']} fmax_mhz={made['fmax_mhz']} {to}")
         elif made:

@@ -373,17 +373,17 @@ class Steps(OwnFolder):
 
 class Bitstreams(OwnFolder):
     def test_only_those_of_todays_rtl_are_copied(self):
-        of_today, rtl_of = "0123456789ab", fpga.rtl_of
-        fpga.rtl_of = lambda row: of_today
-        self.addCleanup(setattr, fpga, "rtl_of", rtl_of)
+        of_today = "0123456789ab"
         fpga.BUILD.mkdir()
         (fpga.BUILD / "chip.bit").write_bytes(b"bits")
         made = {"file": "build/chip.bit", "seed": 2, "fmax_mhz": 71.5, "rtl": of_today}
         fpga.save({"chip": {"bitstream": made}, "chip_tri": {"bitstream": {**made, "rtl": "of before"}},
                    "chip_small": {"bitstream": {**made, "file": "build/gone.bit"}}, "tri_tri": {"bitstream": {}}})
         into = fpga.ROOT / "dist"
+        into.mkdir()
+        (into / "collisionchip-chip_tri-lfe5u85f.bit").write_bytes(b"of an earlier release")
         said = io.StringIO()
-        with contextlib.redirect_stdout(said):
+        with contextlib.redirect_stdout(said), unittest.mock.patch.object(fpga, "rtl_of", lambda row: of_today):
             self.assertEqual(fpga.copy_bitstreams(into), 0)
         self.assertEqual([path.name for path in into.iterdir()], ["collisionchip-chip-lfe5u85f.bit"])
         self.assertEqual((into / "collisionchip-chip-lfe5u85f.bit").read_bytes(), b"bits")

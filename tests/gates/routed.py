@@ -3,7 +3,7 @@
 """The routed chip answers a query: what nextpnr wrote after routing, cell by cell as Verilog, in the place of the RTL.
 
 usage: routed.py ROW SYNTHESIS ROUTED --queries PROGRAM [--build FOLDER]
-  ROW                one of the chip in scripts/fpga.py: chip_tri, chip, chip_small
+  ROW                one of the chip in scripts/fpga.py: chip_tri, chip, chip_small, chip_small_quad
   SYNTHESIS, ROUTED  folders below build/fpga: with netlist.json of Yosys, with routed.json of nextpnr
   --queries PROGRAM  cchip_query_vectors, a target of CMake
   --build FOLDER     for outputs (default build/gates)
